@@ -9,6 +9,8 @@
 //! | `rain.R`, `rain.G`, `rain.B` | radiance that the rain adds |
 //! | `transmittance.Y` | fraction of the scene's light that comes through the rain, 0 to 1 |
 //! | `depth.Z` | distance of the nearest surface from the eye along the ray, meters; 1e30 for the sky |
+//!
+//! [`write_exr_channels`] takes whatever channels there are.
 
 use std::io::Cursor;
 
@@ -24,8 +26,8 @@ use crate::picture::through_rain;
 /// [`RenderError::Encode`] if the pixels are not `width` times `height`, or the encoder fails.
 pub fn write_exr(width: u32, height: u32, pixels: &[[f32; 3]]) -> core::result::Result<Vec<u8>, RenderError> {
     let channels = ["R", "G", "B"].into_iter().zip(0..);
-    let channels = channels.map(|(name, k)| (name, pixels.iter().map(|p: &[f32; 3]| p[k]).collect()));
-    exr([width, height], pixels.len(), channels.collect())
+    let of = |k: usize| Samples::F32(pixels.iter().map(|p: &[f32; 3]| p[k]).collect());
+    write_exr_channels([width, height], channels.map(|(name, k)| (name, of(k))).collect())
 }
 
 /// Encodes a picture with all its layers as one OpenEXR file: see [the module](self) for the channels.
@@ -42,14 +44,24 @@ pub fn write_exr_layers(
     rain: &[[f32; 4]],
     glass: Option<&[[f32; 3]]>,
 ) -> core::result::Result<Vec<u8>, RenderError> {
-    let layer = |pixels: &[[f32; 4]], k: usize| -> Vec<f32> { pixels.iter().map(|p| p[k]).collect() };
-    let mut channels: Vec<(&str, Vec<f32>)> = Vec::new();
+    write_exr_channels([width, height], layer_channels(clean, rain, glass))
+}
+
+/// The channels of [`write_exr_layers`].
+#[must_use]
+pub fn layer_channels(
+    clean: &[[f32; 4]],
+    rain: &[[f32; 4]],
+    glass: Option<&[[f32; 3]]>,
+) -> Vec<(&'static str, Samples)> {
+    let layer = |pixels: &[[f32; 4]], k: usize| Samples::F32(pixels.iter().map(|p| p[k]).collect());
+    let mut channels = Vec::new();
     for (k, name) in ["R", "G", "B"].into_iter().enumerate() {
         let seen = match glass {
             Some(glass) => glass.iter().map(|pixel| pixel[k]).collect(),
             None => through_rain(clean, rain).map(|pixel| pixel[k]).collect(),
         };
-        channels.push((name, seen));
+        channels.push((name, Samples::F32(seen)));
     }
     for (k, name) in ["clean.R", "clean.G", "clean.B", "depth.Z"].into_iter().enumerate() {
         channels.push((name, layer(clean, k)));
@@ -57,21 +69,48 @@ pub fn write_exr_layers(
     for (k, name) in ["rain.R", "rain.G", "rain.B", "transmittance.Y"].into_iter().enumerate() {
         channels.push((name, layer(rain, k)));
     }
-    exr([width, height], clean.len(), channels)
+    channels
 }
 
-/// Channels of 32 bits in one part, ZIP compressed.
-fn exr(
+/// Numbers of a channel, rows from the top.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Samples {
+    /// Numbers.
+    F32(Vec<f32>),
+    /// Whole numbers.
+    U32(Vec<u32>),
+}
+
+impl Samples {
+    fn len(&self) -> usize {
+        match self {
+            Self::F32(samples) => samples.len(),
+            Self::U32(samples) => samples.len(),
+        }
+    }
+}
+
+/// Encodes channels of 32 bits as an OpenEXR file of one part, ZIP compressed.
+///
+/// # Errors
+/// As [`write_exr`].
+pub fn write_exr_channels(
     [width, height]: [u32; 2],
-    count: usize,
-    channels: Vec<(&str, Vec<f32>)>,
+    channels: Vec<(&str, Samples)>,
 ) -> core::result::Result<Vec<u8>, RenderError> {
     let encode = |reason: String| RenderError::Encode { format: "OpenEXR", reason };
     let size = (width as usize, height as usize);
-    if count != size.0 * size.1 || channels.iter().any(|(_, samples)| samples.len() != count) {
-        return Err(encode(format!("{count} pixels for {width} x {height}")));
+    let count = size.0 * size.1;
+    if let Some((_, found)) = channels.iter().find(|(_, samples)| samples.len() != count) {
+        return Err(encode(format!("{} pixels for {width} x {height}", found.len())));
     }
-    let channel = |(name, samples): (&str, Vec<f32>)| AnyChannel::new(name, FlatSamples::F32(samples));
+    let channel = |(name, samples): (&str, Samples)| {
+        let samples = match samples {
+            Samples::F32(samples) => FlatSamples::F32(samples),
+            Samples::U32(samples) => FlatSamples::U32(samples),
+        };
+        AnyChannel::new(name, samples)
+    };
     let channels = channels.into_iter().map(channel).collect();
     let encoding = Encoding {
         compression: Compression::ZIP16,

@@ -4,7 +4,8 @@ use std::f32::consts::PI;
 
 use downpour_shaders::render::pane_shadow::PANE_SHADOW_SUN;
 use downpour_shaders::render::scene::{
-    SCENE_FAR, SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_POINT, SCENE_LIGHT_ROWS,
+    LIGHT_LARGEST_SPREAD, SCENE_FAR, SCENE_LIGHT_AREA, SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_POINT,
+    SCENE_LIGHT_ROWS,
 };
 use glam::{Vec3, Vec4};
 
@@ -25,19 +26,23 @@ pub enum LightSource {
         /// Irradiance on a surface that faces it.
         irradiance: Vec3,
     },
-    /// Light from a point.
+    /// Light from a point or a sphere.
     Point {
-        /// Position, meters.
+        /// Center, meters.
         position: Vec3,
+        /// Radius of the sphere, meters; 0: a point.
+        radius: f32,
         /// Radiant intensity: irradiance at 1 m.
         intensity: Vec3,
         /// Range of the light, meters; 0: unlimited.
         range: f32,
     },
-    /// Light from a point in a cone.
+    /// Light from a point or a sphere in a cone.
     Spot {
-        /// Position, meters.
+        /// Center, meters.
         position: Vec3,
+        /// Radius of the sphere, meters; 0: a point.
+        radius: f32,
         /// Axis of the cone, of length 1.
         direction: Vec3,
         /// Radiant intensity on the axis.
@@ -56,9 +61,9 @@ pub enum LightSource {
 pub struct Light {
     /// Position, meters; nothing for parallel light.
     pub position: Vec3,
-    /// True for parallel light.
-    pub is_parallel: bool,
-    /// Direction of the light, or axis of the cone.
+    /// `SCENE_LIGHT_DIRECTIONAL`, `SCENE_LIGHT_POINT`, `SCENE_LIGHT_BODY` or `SCENE_LIGHT_AREA`.
+    pub kind: u32,
+    /// Direction of the light, axis of the cone, or normal of an area.
     pub axis: Vec3,
     /// Chord from the center to the edge of its disk as seen in a drop; 0: that of the sun.
     pub chord: f32,
@@ -68,6 +73,8 @@ pub struct Light {
     pub range: f32,
     /// Scale and offset of the cosine at the edge of the cone: `clamp(cosine * scale + offset, 0, 1)` squared.
     pub cone: [f32; 2],
+    /// Radius of the lamp, meters; 0: a point. Of a place of an area: distance within which its light does not grow.
+    pub radius: f32,
 }
 
 /// Light of a lamp at a point.
@@ -90,19 +97,26 @@ impl Light {
         let [position, axis, color, cone] = rows.map(|row| Vec4::from(row.map(f32::from_bits)));
         Self {
             position: position.truncate(),
-            is_parallel: rows[0][3] == SCENE_LIGHT_DIRECTIONAL,
+            kind: rows[0][3],
             axis: axis.truncate(),
             chord: axis.w,
             color: color.truncate(),
             range: color.w,
             cone: [cone.x, cone.y],
+            radius: cone.z,
         }
+    }
+
+    /// True for parallel light.
+    #[must_use]
+    pub fn is_parallel(&self) -> bool {
+        self.kind == SCENE_LIGHT_DIRECTIONAL
     }
 
     /// Returns the light at a point. A lamp nearer than `least` is as bright as at that distance.
     #[must_use]
     pub fn light_sample(&self, point: Vec3, least: f32) -> LightSample {
-        if self.is_parallel {
+        if self.is_parallel() {
             return LightSample {
                 direction: -self.axis,
                 distance: SCENE_FAR,
@@ -111,7 +125,8 @@ impl Light {
             };
         }
         let offset = self.position - point;
-        let square = offset.dot(offset).max((least * least).max(1.0e-8));
+        let inside = least.max(self.radius);
+        let square = offset.dot(offset).max((inside * inside).max(1.0e-8));
         let distance = offset.dot(offset).max(1.0e-8).sqrt();
         let direction = offset / distance;
         // glTF's window: no light beyond the range, if there is one.
@@ -119,9 +134,17 @@ impl Light {
         let fourth = part * part * part * part;
         let window = if self.range > 0.0 { (1.0 - fourth).clamp(0.0, 1.0) } else { 1.0 };
         let [scale, offset_of_edge] = self.cone;
-        let edge = ((-direction).dot(self.axis) * scale + offset_of_edge).clamp(0.0, 1.0);
-        let irradiance = self.color * (window * edge * edge / square);
-        LightSample { direction, distance, irradiance, spread: 0.0 }
+        let cosine = (-direction).dot(self.axis);
+        let edge = (cosine * scale + offset_of_edge).clamp(0.0, 1.0);
+        // An area shines to both sides.
+        let shape = if self.kind == SCENE_LIGHT_AREA { cosine.abs() } else { edge * edge };
+        let irradiance = self.color * (window * shape / square);
+        let spread = if self.kind == SCENE_LIGHT_AREA {
+            0.0
+        } else {
+            (self.radius / distance).min(LIGHT_LARGEST_SPREAD)
+        };
+        LightSample { direction, distance, irradiance, spread }
     }
 }
 
@@ -139,28 +162,28 @@ impl LightSource {
         let row = |v: Vec3, w: f32| [v.x, v.y, v.z, w].map(f32::to_bits);
         let point = |v: Vec3, kind: u32| [v.x.to_bits(), v.y.to_bits(), v.z.to_bits(), kind];
         // The edge is clamp(cos * scale + offset, 0, 1)^2, as KHR_lights_punctual suggests.
-        let everywhere = [0.0f32, 1.0, 0.0, 0.0].map(f32::to_bits);
+        let everywhere = |radius: f32| [0.0f32, 1.0, radius, 0.0].map(f32::to_bits);
         match *self {
             Self::Directional { direction, irradiance } => [
                 point(Vec3::ZERO, SCENE_LIGHT_DIRECTIONAL),
                 row(direction, 0.0),
                 row(over_pi(irradiance), 0.0),
-                everywhere,
+                everywhere(0.0),
             ],
-            Self::Point { position, intensity, range } => [
+            Self::Point { position, radius, intensity, range } => [
                 point(position, SCENE_LIGHT_POINT),
                 row(Vec3::NEG_Y, 0.0),
                 row(over_pi(intensity), range),
-                everywhere,
+                everywhere(radius),
             ],
-            Self::Spot { position, direction, intensity, range, inner, outer } => {
+            Self::Spot { position, radius, direction, intensity, range, inner, outer } => {
                 let (inner, outer) = (downpour_math::ops::cos(inner), downpour_math::ops::cos(outer));
                 let scale = 1.0 / (inner - outer).max(1.0e-3);
                 [
                     point(position, SCENE_LIGHT_POINT),
                     row(direction, 0.0),
                     row(over_pi(intensity), range),
-                    [scale, -outer * scale, 0.0, 0.0].map(f32::to_bits),
+                    [scale, -outer * scale, radius, 0.0].map(f32::to_bits),
                 ]
             }
         }

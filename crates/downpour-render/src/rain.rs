@@ -70,6 +70,7 @@ pub(crate) mod tiles;
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 pub mod tiles;
+mod truth;
 mod weather;
 
 use downpour_shaders::render::rain::{DROPS_DIRECTION, DROPS_SHIFT};
@@ -88,6 +89,7 @@ pub use streak::DropsDrop;
 pub use streak_lookup::StreakTable;
 pub use streak_path::StreakPath;
 pub use streak_rays::StreakRay;
+pub use truth::DropTruth;
 pub use weather::drop_model;
 
 /// Glints that are kept of a drop where nothing else is said.

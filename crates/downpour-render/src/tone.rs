@@ -13,7 +13,7 @@ use rayon::prelude::*;
 const START: f32 = 0.8 - 0.04;
 const DESATURATION: f32 = 0.15;
 /// Middle gray.
-const GRAY: f32 = 0.18;
+pub const GRAY: f32 = 0.18;
 
 /// Luminance of linear BT.709.
 #[must_use]

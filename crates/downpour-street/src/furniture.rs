@@ -99,14 +99,14 @@ fn lantern_post() -> (Mesh, Lamp) {
     lantern(&mut mesh, Vec3::new(0.0, 3.27, 0.0));
     let lamp = Lamp {
         name: "street lamp",
-        position: [0.0, 3.10, 0.0],
+        position: [0.0, 3.52, 0.0],
         direction: None,
         cone_deg: [0.0; 2],
         color: [1.0, 0.84, 0.63],
         intensity_cd: 210.0,
         range_m: 24.0,
     };
-    (mesh, Lamp { position: [0.16, 3.12, 0.0], ..lamp })
+    (mesh, lamp)
 }
 
 /// A lantern on a bracket before a wall; the wall is at x = 0, the street at +x.
@@ -125,7 +125,7 @@ pub(crate) fn wall_lamp() -> (Mesh, Lamp) {
     lantern(&mut mesh, Vec3::new(0.58, 0.33, 0.0));
     let lamp = Lamp {
         name: "wall lamp",
-        position: [0.74, 0.22, 0.0],
+        position: [0.58, 0.58, 0.0],
         direction: None,
         cone_deg: [0.0; 2],
         color: [1.0, 0.84, 0.63],

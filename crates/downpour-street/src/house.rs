@@ -15,7 +15,6 @@ use glam::Vec3;
 
 use crate::material::Material;
 use crate::mesh::{Mesh, Paint, tinted};
-use crate::model::Lamp;
 
 pub(crate) use style::draw;
 pub(crate) use window::{WindowDesign, window};
@@ -111,12 +110,11 @@ pub(crate) struct PlacedWindow {
     pub(crate) corner: Vec3,
 }
 
-/// A finished house: mesh, windows, lamps.
+/// A finished house: mesh and windows.
 #[derive(Default)]
 pub(crate) struct Built {
     pub(crate) mesh: Mesh,
     pub(crate) windows: Vec<PlacedWindow>,
-    pub(crate) lamps: Vec<Lamp>,
 }
 
 /// An opening in the front.

@@ -220,9 +220,6 @@ fn houses(settings: &StreetSettings, ground: &Ground, plan: &mut Plan) {
                 let design: WindowDesign = placed.design;
                 plan.place(&format!("window {design:?}"), || window(design), at(placed.corner));
             }
-            for lamp in &built.lamps {
-                plan.light(lamp, place);
-            }
             along += width;
         }
     }

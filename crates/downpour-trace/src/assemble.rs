@@ -63,14 +63,21 @@ impl SceneBuilder {
             let Some(light) = scene.lights.get(placed.light) else { continue };
             let strength = light.color * light.intensity;
             let range = light.range.unwrap_or(0.0);
+            let radius = light.radius.unwrap_or(0.0);
             let position = pose.world_f64(placed.node).map_or(placed.position.as_dvec3(), |w| w.translation);
             let (position, direction) = ((position - origin).as_vec3(), placed.direction);
             self.add_light(match light.kind {
                 LightKind::Directional => LightSource::Directional { direction, irradiance: strength },
-                LightKind::Point => LightSource::Point { position, intensity: strength, range },
-                LightKind::Spot { inner, outer } => {
-                    LightSource::Spot { position, direction, intensity: strength, range, inner, outer }
-                }
+                LightKind::Point => LightSource::Point { position, radius, intensity: strength, range },
+                LightKind::Spot { inner, outer } => LightSource::Spot {
+                    position,
+                    radius,
+                    direction,
+                    intensity: strength,
+                    range,
+                    inner,
+                    outer,
+                },
             });
         }
     }

@@ -1,13 +1,17 @@
 //! A scene being put together: meshes, materials, textures and lamps become the buffers of [`data`](crate::data).
 
+mod lamp_glass;
 mod texture;
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use downpour_bvh::Bvh;
+use downpour_shaders::render::scene::{SCENE_LAMP_GLASS, SCENE_UNLIT};
 use glam::{Affine3A, Vec2, Vec3, Vec4};
 
 use crate::data::{RenderCorner, SceneData};
+use crate::emitter::{self, mean_emission};
 use crate::material::{MaterialLook, TextureSlot};
 use crate::sky_light::SkyLight;
 use downpour_render::light::LightSource;
@@ -136,16 +140,27 @@ impl SceneBuilder {
             self.positions.push([[0.0, -1.0e6, 0.0], [1.0e-3, -1.0e6, 0.0], [0.0, -1.0e6, 1.0e-3]]);
             self.corners.push([RenderCorner { normal: [0.0, 1.0, 0.0], ..RenderCorner::default() }; 3]);
         }
+        let shining: Vec<usize> = (0..self.corners.len()).filter(|&k| self.shines(k)).collect();
+        let owners = lamp_glass::owners(&self.positions, &shining, &self.lights);
+        self.mark_lamp_glass(&owners);
         let bvh = Bvh::new(&self.positions);
         let mut triangles = bvh.triangles;
         let last_material = self.materials.len() as u32 - 1;
         let mut corners = Vec::with_capacity(3 * triangles.len());
+        let mut emitters = Vec::new();
+        let mut glass: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
         for (leaf, triangle) in (0u32..).zip(&mut triangles) {
-            for mut corner in self.corners[triangle.index as usize] {
+            let index = triangle.index as usize;
+            for mut corner in self.corners[index] {
                 corner.material = corner.material.min(last_material);
                 corners.push(corner);
             }
             triangle.index = leaf;
+            match owners.get(&index) {
+                Some(&lamp) => glass.entry(lamp).or_default().push(leaf),
+                None if shining.binary_search(&index).is_ok() => emitters.push(leaf),
+                None => {}
+            }
         }
         let mut table: Vec<[u32; 4]> = Vec::new();
         let slots = (self.materials.len() * crate::material::MATERIAL_ROWS) as u32;
@@ -162,7 +177,7 @@ impl SceneBuilder {
         if self.texels.is_empty() {
             self.texels.push(u32::MAX);
         }
-        SceneData {
+        let mut data = SceneData {
             nodes: Arc::new(bvh.nodes),
             triangles: Arc::new(triangles),
             corners: Arc::new(corners),
@@ -175,9 +190,44 @@ impl SceneBuilder {
             puddle_count: 0,
             pane: 0,
             wetness: 0,
+            emitters: 0,
             sky: Arc::new(sky.texels.clone()),
             sky_levels: sky.levels,
             sky_irradiance: sky.irradiance,
+        };
+        for (lamp, parts) in glass {
+            let parts: Vec<_> = parts.iter().map(|&triangle| mean_emission(&data, triangle)).collect();
+            data.set_lamp_glass(lamp as u32, lamp_glass::radius(&self.lights[lamp], &parts));
+        }
+        let words = emitter::words(&data, &emitters);
+        if !words.is_empty() {
+            let texels = Arc::make_mut(&mut data.texels);
+            data.emitters = texels.len() as u32;
+            texels.extend(words);
+        }
+        data
+    }
+
+    /// True if triangle `k` shines.
+    fn shines(&self, k: usize) -> bool {
+        let material = self.materials.get(self.corners[k][0].material as usize);
+        material
+            .is_some_and(|look| look.flags & SCENE_UNLIT == 0 && look.emission.iter().any(|&part| part > 0.0))
+    }
+
+    /// Gives triangles that are the glass of lamps a material of their own.
+    fn mark_lamp_glass(&mut self, owners: &BTreeMap<usize, usize>) {
+        let mut marked: BTreeMap<u32, u32> = BTreeMap::new();
+        for &triangle in owners.keys() {
+            let of = self.corners[triangle][0].material;
+            let own = *marked.entry(of).or_insert_with(|| {
+                let look = self.materials[of as usize];
+                self.materials.push(MaterialLook { flags: look.flags | SCENE_LAMP_GLASS, ..look });
+                self.materials.len() as u32 - 1
+            });
+            for corner in &mut self.corners[triangle] {
+                corner.material = own;
+            }
         }
     }
 }

@@ -92,7 +92,7 @@ pub(crate) fn capture_suns(view: &SceneView<'_>, x: u32, y: u32) -> Vec3 {
     let mut sum = Vec3::ZERO;
     for k in 0..frame.light_count {
         let light = view.data.light_load(k);
-        if !light.is_parallel {
+        if !light.is_parallel() {
             continue;
         }
         let light = light.light_sample(eye, 0.0);

@@ -9,7 +9,9 @@ use downpour_bvh::{BvhNode, BvhTriangle};
 use downpour_render::RenderError;
 use downpour_render::camera::{Camera, Viewpoint};
 use downpour_render::light::{Light, LightSource};
-use downpour_shaders::render::scene::{SCENE_LIGHT_ROWS, SCENE_PICTURE, SCENE_SKY_LEVELS, SKYLIGHT_RADIUS};
+use downpour_shaders::render::scene::{
+    SCENE_LIGHT_BODY, SCENE_LIGHT_ROWS, SCENE_PICTURE, SCENE_SKY_LEVELS, SKYLIGHT_RADIUS,
+};
 use glam::Vec3;
 
 /// Part of the pixels over which the filter takes means that one is.
@@ -67,8 +69,8 @@ pub struct RenderFrame {
     pub skylight_pass: u32,
     /// Row of the table where the wetness of surfaces begins; 0: all is dry.
     pub wetness: u32,
-    /// 0.
-    pub unused_2: u32,
+    /// Word of the texels where the tree of surfaces that shine begins; 0: none shine.
+    pub emitters: u32,
     /// Width, height and first texel of each level of the sky.
     pub sky_levels: [[u32; 4]; SCENE_SKY_LEVELS as usize],
     /// Irradiance of the sky over pi as spherical harmonics of degree 2.
@@ -86,7 +88,7 @@ pub struct SceneData {
     pub corners: Arc<Vec<RenderCorner>>,
     /// Materials, texture slots, lights, wetness, puddles and a pane, as rows.
     pub table: Vec<[u32; 4]>,
-    /// Texels of all levels of all textures.
+    /// Texels of all levels of all textures, and behind them the tree of surfaces that shine ([`emitter`](crate::emitter)).
     pub texels: Arc<Vec<u32>>,
     /// Row where slots begin.
     pub slots: u32,
@@ -102,6 +104,8 @@ pub struct SceneData {
     pub pane: u32,
     /// Row where the wetness of surfaces begins; 0: all is dry.
     pub wetness: u32,
+    /// Word of the texels where the tree of surfaces that shine begins; 0: none shine.
+    pub emitters: u32,
     /// Texels of all levels of the sky.
     pub sky: Arc<Vec<[f32; 4]>>,
     /// Width, height and first texel of each level of the sky.
@@ -134,6 +138,15 @@ impl SceneData {
         }
         self.light_count = lights.len() as u32;
         (self.puddles, self.puddle_count, self.pane, self.wetness) = (0, 0, 0, 0);
+    }
+
+    /// Says how large the glass of lamp `index` is, in meters, which is in the model and shines.
+    pub(crate) fn set_lamp_glass(&mut self, index: u32, radius: Option<f32>) {
+        let row = (self.lights + index * SCENE_LIGHT_ROWS) as usize;
+        self.table[row][3] = SCENE_LIGHT_BODY;
+        if let Some(radius) = radius {
+            self.table[row + 3][2] = radius.to_bits();
+        }
     }
 
     /// Gives light `index` an angular radius, in radians: that of the disk that drops show of it. Without one it is the sun's.
@@ -180,7 +193,7 @@ impl RenderFrame {
             pane: scene.pane,
             skylight_pass: 0,
             wetness: scene.wetness,
-            unused_2: 0,
+            emitters: scene.emitters,
             sky_levels: scene.sky_levels,
             sky_irradiance: scene.sky_irradiance,
         })

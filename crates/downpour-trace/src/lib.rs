@@ -4,8 +4,10 @@
 //! - [`scene`], [`path`], [`scatter`], [`surface`], [`texture`], [`sky`], [`brdf`], `gpu`: what a ray of the camera sees, and the
 //!   light that comes there; [`skylight`] filters it;
 //! - [`capture`]: radiance from every direction around the eye, for the drops;
+//! - [`emitter`]: surfaces that shine, as lights;
 //! - [`wet`]: surfaces that rain has made wet; [`puddle`], [`wet_ground`]: water that stands on the ground; [`pane_shadow`]: the light through a wet pane;
 //! - [`stage`]: the scene and the eye of a weather at a time;
+//! - [`truth`]: what the pixels of a picture show, in numbers;
 //! - [`picture`]: the plate of a scene, and the rain of [`downpour_render`] before it.
 
 #![cfg_attr(
@@ -22,6 +24,11 @@ pub mod brdf;
 pub mod builder;
 pub mod capture;
 pub mod data;
+#[cfg(not(feature = "parity"))]
+mod emitter;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
+pub mod emitter;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
 pub mod material;
@@ -66,6 +73,7 @@ mod trace;
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 pub mod trace;
+pub mod truth;
 #[cfg(not(feature = "parity"))]
 mod wet;
 #[cfg(feature = "parity")]

@@ -16,30 +16,36 @@
 //!
 //! [`skylight`](crate::skylight) takes means of this light over neighboring pixels, but for that of mirrors.
 //!
-//! Limits: what a diffuse base finds reflects diffusely (no caustics); things that shine light up others only where
-//! there are no lamps, which else stand for them; rays that look for light do not see the water of puddles.
+//! Surfaces that shine are lights ([`emitter`](crate::emitter)): rays see them in a gloss only, and the glass of a lamp in a sharp one
+//! only, so that each is counted once.
+//!
+//! Limits: what a diffuse base finds reflects diffusely (no caustics); rays that look for light do not see the water of puddles.
 
 mod draw;
 mod plan;
 
 use downpour_math::ops;
+use downpour_render::light::light_weight;
 use downpour_shaders::bvh::BVH_FAR;
 use downpour_shaders::render::path::{
-    PATH_BOUNCES, PATH_CANDIDATES, PATH_CURVED, PATH_CURVED_FRACTION, PATH_CURVED_PART, PATH_LATER_FRACTION,
-    PATH_MIRROR_LAMPS, PATH_OPEN, PATH_PLAIN_GLOSS, PATH_SAME_FACET, PATH_SAME_PLANE,
-    PATH_SECONDARY_ROUGHNESS, PATH_SHINES,
+    PATH_BETWEEN, PATH_BOUNCES, PATH_CANDIDATES, PATH_CURVED, PATH_CURVED_FRACTION, PATH_CURVED_PART,
+    PATH_LATER_FRACTION, PATH_MIRROR_LAMPS, PATH_OCCLUSION, PATH_OPEN, PATH_OTHER, PATH_PLAIN_GLOSS,
+    PATH_SAME_FACET, PATH_SAME_PLANE, PATH_SECONDARY_ROUGHNESS, PATH_SHINES,
 };
 use downpour_shaders::render::puddle_water::{
     PUDDLE_WATER_DOWN, PUDDLE_WATER_MATERIAL, PUDDLE_WATER_RAYS, PUDDLE_WATER_RIPPLED,
 };
-use downpour_shaders::render::scene::{SCENE_FAR, SCENE_LAYERS, SCENE_NONE, SCENE_UNLIT, SKYLIGHT_SLACK};
+use downpour_shaders::render::scene::{
+    SCENE_FAR, SCENE_LAMP_GLASS, SCENE_LAYERS, SCENE_NONE, SCENE_PICTURE, SCENE_SEEN_BODY, SCENE_UNLIT,
+    SKYLIGHT_SLACK,
+};
 use downpour_shaders::render::wet::WET_FAR;
 use glam::{Vec2, Vec3};
 
 use crate::brdf::brdf_fresnel;
 use crate::scatter::{ScatterRay, scatter_chance, scatter_draw, scatter_mirror};
-use crate::scene::SceneView;
 use crate::scene::water::{PuddleWater, puddle_water_above, puddle_water_refracted};
+use crate::scene::{SceneAsked, SceneView};
 use crate::surface::Surface;
 use crate::wet::{wet_relief, wet_surface};
 pub use downpour_render::path_lattice::{path_lattice_numbers, path_lattice_words};
@@ -175,6 +181,12 @@ struct PathWater {
 struct PathMeeting {
     surface: Surface,
     direct: Vec3,
+    /// Light of surfaces that shine, and of lamps with soft shadows, on its diffuse base, over pi.
+    glow: Vec3,
+    /// Part of that light that the relief of the surface leaves.
+    relief: f32,
+    /// True if a lamp is hidden in part.
+    is_soft: bool,
     plan: PathPlan,
     /// True if its light is averaged over neighboring pixels.
     told: bool,
@@ -225,7 +237,7 @@ impl SceneView<'_> {
         let wet = (frame.wetness > 0).then(|| data.wet_load());
         for layer in 0..SCENE_LAYERS {
             let Some(hit) = data.surface_hit(start, towards, near, BVH_FAR) else {
-                path.radiance += throughput * data.sky_level(0, towards);
+                path.radiance += throughput * (data.sky_level(0, towards) + self.scene_suns(towards));
                 return path;
             };
             let mut found = data.surface_at(&hit, start, towards, cone);
@@ -277,9 +289,23 @@ impl SceneView<'_> {
             }
             near = hit.distance + frame.nearest;
             let unlit = found.flags & SCENE_UNLIT != 0;
-            let mut direct = found.diffuse;
+            let (mut direct, mut glow, mut is_soft, mut relief) = (found.diffuse, Vec3::ZERO, false, 1.0);
             if !unlit {
-                direct = found.emission + self.scene_direct(&found, -towards, 0, 0.0, 0.0, depth);
+                let is_lamp = found.flags & SCENE_LAMP_GLASS != 0;
+                // Drops are lit by lamps on their own.
+                let left_out = is_lamp && frame.projection != SCENE_PICTURE && frame.suns_out > 0;
+                // The lattice has few points along its third axis: each pixel is somewhere between them.
+                // Of lamps no means over neighbors are taken, where a lattice would be seen.
+                let [x, y, z, w] = path_lattice_numbers(random, 0, 0, 0, 1);
+                let numbers = [x, y, (w + z * PATH_BETWEEN).fract(), z];
+                let footprint = Some(cone * hit.distance);
+                let asked = SceneAsked { draws: 0, numbers, standoff: 0.0, under: depth, footprint };
+                let lamplight = self.scene_direct(&found, -towards, &asked);
+                direct = if left_out { Vec3::ZERO } else { found.emission } + lamplight.lit;
+                // What is told apart goes with the rest of the light on the diffuse base, which has the material's occlusion.
+                (glow, is_soft) = (lamplight.glow / found.occlusion.max(PATH_OCCLUSION), lamplight.is_soft);
+                let rest = light_weight(data.sky_irradiance(found.normal)).max(1.0e-9);
+                relief = (rest + lamplight.relief_light) / (rest + lamplight.flat_light);
             }
             let told = path.base.slack == 0.0 && path_cover(&found) == 1.0 && found.transmission == 0.0;
             let free = path.mirror.slack == 0.0;
@@ -304,7 +330,7 @@ impl SceneView<'_> {
             let from_eye = found.position - origin;
             let slack = from_eye.dot(from_eye).sqrt() * (cone * 2.0 + SKYLIGHT_SLACK);
             let ripple = if met.is_some() { water.map(|water| water.ripple) } else { None };
-            let meeting = PathMeeting { surface: found, direct, plan, told, slack };
+            let meeting = PathMeeting { surface: found, direct, glow, relief, is_soft, plan, told, slack };
             let light = self.path_light(&meeting, towards, cone, random, ripple, under);
             if let (Some(_), Some(water)) = (met, &mut water) {
                 throughput *= path.path_show_water(&meeting, &light, water.ripple, towards, throughput);
@@ -349,6 +375,8 @@ impl SceneView<'_> {
             let (mut at, mut view) = (meeting.surface, -towards);
             let mut ray = ScatterRay::ALL;
             let (mut from, mut leaves, mut given) = (at.position, PathLeave::First, Vec3::ZERO);
+            // Roughness of the gloss that the ray follows.
+            let mut followed = 1.0f32;
             let is_mirror = turn <= plan.mirrors;
             let of_shown = plan.replaced && is_mirror;
             let (index, count) =
@@ -373,15 +401,17 @@ impl SceneView<'_> {
                             }
                             ray = next;
                             ray.width += cone + plan.spread;
+                            followed = at.roughness;
                         }
                         PathLeave::Mirror => {
                             let cosine = at.normal.dot(view).max(0.0);
                             next.mirror = ray.mirror * brdf_fresnel(at.normal_reflectance, cosine);
                             next.width += ray.width;
                             ray = next;
+                            followed = followed.max(at.roughness);
                         }
-                        PathLeave::Shown => ray = path_replaced(&ray, &next),
-                        _ => ray = path_onward(&ray, &next, &at, numbers[2]),
+                        PathLeave::Shown => (ray, followed) = (path_replaced(&ray, &next), 1.0),
+                        _ => (ray, followed) = (path_onward(&ray, &next, &at, numbers[2]), 1.0),
                     }
                     if path_max(ray.diffuse + ray.mirror) <= 0.0 {
                         break;
@@ -404,13 +434,24 @@ impl SceneView<'_> {
                 let mut found = path_secondary(&found, ray.roughness);
                 let lamps = if ray.roughness < PATH_SECONDARY_ROUGHNESS { PATH_MIRROR_LAMPS } else { 1 };
                 let standoff = hit.distance * ray.width * 0.5;
-                // Where there are lamps, they stand for what shines; small bright things would be noise.
-                let shines = ray.roughness < PATH_SHINES || frame.light_count == 0;
+                // Surfaces that shine are lights: rays see them in a gloss only.
+                let is_lamp = found.flags & SCENE_LAMP_GLASS != 0;
+                if followed < if is_lamp { SCENE_SEEN_BODY } else { PATH_SHINES } {
+                    light.mirror += ray.mirror * found.emission * path_cover(&found);
+                }
                 let unlit = found.flags & SCENE_UNLIT != 0;
                 let mut lit = found.diffuse;
                 if !unlit {
-                    lit = if shines { found.emission } else { Vec3::ZERO }
-                        + self.scene_direct(&found, -ray.along, lamps, numbers[3], standoff, Vec2::ZERO);
+                    let [x, y, z, w] = numbers;
+                    let [x, y, z] = [x, y, z].map(|number| (number * PATH_OTHER).fract());
+                    let asked = SceneAsked {
+                        draws: lamps,
+                        numbers: [x, y, z, w],
+                        standoff,
+                        under: Vec2::ZERO,
+                        footprint: None,
+                    };
+                    lit = self.scene_direct(&found, -ray.along, &asked).lit;
                 }
                 let cover = path_cover(&found);
                 light = light.path_accumulated(&ray, lit * cover, of_shown);
@@ -501,7 +542,7 @@ impl SceneView<'_> {
         layer: u32,
         throughput: Vec3,
     ) {
-        let PathMeeting { surface, direct, mut plan, told, slack } = *meeting;
+        let PathMeeting { surface, direct, glow, relief, is_soft, mut plan, told, slack } = *meeting;
         let cover = path_cover(&surface);
         path.radiance += throughput * direct * cover;
         if surface.flags & SCENE_UNLIT != 0 {
@@ -509,17 +550,22 @@ impl SceneView<'_> {
         }
         let mirrored = towards - surface.normal * (2.0 * towards.dot(surface.normal));
         let of_gloss = if plan.chance > 0.0 { plan.rays } else { plan.mirrors };
-        let mut base = light.base / plan.rays.max(1) as f32;
+        let mut base = light.base / plan.rays.max(1) as f32 + glow;
         let mut mirror = light.mirror / of_gloss.max(1) as f32;
+        if surface.roughness >= PATH_SHINES {
+            // The widest lobes see of what shines about what the diffuse base sees.
+            mirror += glow;
+        }
         if plan.mirrors + plan.rays == 0 {
-            base = self.data.sky_irradiance(surface.normal);
+            base = self.data.sky_irradiance(surface.normal) + glow;
             mirror = self.data.sky_cone(mirrored, scatter_mirror(&surface, -towards).width);
         } else if plan.mirrors == 0 && plan.chance == 0.0 {
             // Too faint to trace rays for it.
+            base -= glow * plan.gloss / (plan.body + plan.gloss).max(Vec3::splat(1.0e-9));
             plan.body += plan.gloss;
             plan.gloss = Vec3::ZERO;
         }
-        let of_base = throughput * plan.body * cover;
+        let of_base = throughput * plan.body * (cover * relief);
         let of_gloss = throughput * plan.gloss * cover;
         let slot = PathSlot { slack, position: surface.position, ..PathSlot::NONE };
         if told {
@@ -527,7 +573,7 @@ impl SceneView<'_> {
             let mirrors = plan.mirrors > 0
                 && (surface.roughness < PATH_CURVED || !plan.kept)
                 && path_max(plan.gloss) > PATH_PLAIN_GLOSS;
-            path.plain = !(mirrors || layer > 0);
+            path.plain = !(mirrors || layer > 0 || is_soft);
         } else {
             path.radiance += of_base * base;
         }

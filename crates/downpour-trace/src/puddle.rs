@@ -1,6 +1,7 @@
 //! Puddles on the surfaces of a scene (Tatarchuk & Isidoro 2006, section 4).
 //!
-//! 1. [`PuddleMap`]: where water stands and how deep, painted or found from the scene by filling its hollows ([`fill`]), on
+//! 1. [`PuddleMap`]: where water stands and how deep, painted or found from the scene by filling its hollows ([`fill`]), by the rain
+//!    of their catchments or by a part of their depth, on
 //!    ground whose unevenness may be finer than its model ([`relief`]);
 //! 2. [`WetGround`](crate::wet_ground::WetGround): the maps of a weather, and the ripples of the rain on them, from picture
 //!    to picture;
@@ -15,7 +16,8 @@ mod ripples;
 mod rows;
 
 pub use error::PuddleError;
-pub use map::{Ground, PuddleMap};
+pub use fill::{FillLimits, Filling};
+pub use map::{Ground, PuddleGround, PuddleMap};
 pub(crate) use relief::Relief;
 pub use ripples::{Ripples, slope_levels};
 pub(crate) use rows::RenderPuddle;

@@ -11,6 +11,10 @@ pub(crate) mod water;
 pub mod water;
 
 use crate::data::{RenderFrame, SceneData};
+pub(crate) use lamps::SceneAsked;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
+pub use lamps::{scene_alpha, scene_disk, scene_softness};
 
 /// A scene and a frame, as rays need them.
 #[derive(Clone, Copy, Debug)]

@@ -29,7 +29,7 @@ use crate::wet::SceneWetness;
 use downpour_render::RenderError;
 use downpour_render::camera::{EyeMotion, MAX_EXPOSURE_S, PictureEdge, Viewpoint, check_size};
 use downpour_render::light::LightSource;
-use downpour_render::tone::{tone_automatic_exposure, tone_luminance};
+use downpour_render::tone::{GRAY, tone_automatic_exposure, tone_luminance};
 pub use error::StageError;
 pub use eye::CameraChoice;
 use eye::CameraView;
@@ -54,6 +54,9 @@ const MIN_INTERVAL_S: f64 = 1.0e-3;
 
 /// Pixels darker than this part of the mean have no say in the exposure.
 const UNLIT: f32 = 1.0e-4;
+
+/// A pixel counts as no brighter than this multiple of the geometric mean, where the mean is taken.
+const BRIGHTEST: f32 = 1.0e4;
 
 /// A scene at one time: its buffers, light and camera.
 #[derive(Clone, Debug)]
@@ -205,9 +208,11 @@ impl Stage {
     #[must_use]
     pub fn exposure(&self, clean: &[[f32; 4]]) -> f32 {
         let luminance = |&[r, g, b, _]: &[f32; 4]| tone_luminance(Vec3::new(r, g, b));
+        // The disk of the sun, a million times brighter than all else, is not to make that dark.
+        let most = GRAY / tone_automatic_exposure(clean) * BRIGHTEST;
         let (sum, count) = clean
             .iter()
-            .map(luminance)
+            .map(|pixel| luminance(pixel).min(most))
             .filter(|y| y.is_finite() && *y > 0.0)
             .fold((0.0f64, 0u32), |(sum, count), y| (sum + f64::from(y), count + 1));
         let least = (sum / f64::from(count.max(1))) as f32 * UNLIT;

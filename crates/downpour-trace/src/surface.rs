@@ -69,7 +69,7 @@ pub fn surface_porosity(own: f32, flags: u32, roughness: f32, metallic: f32) -> 
 }
 
 impl SceneData {
-    fn corners_of(&self, hit: &Hit) -> &[RenderCorner] {
+    pub(crate) fn corners_of(&self, hit: &Hit) -> &[RenderCorner] {
         let first = hit.triangle as usize * 3;
         &self.corners[first..first + 3]
     }
@@ -90,6 +90,12 @@ impl SceneData {
         material.base.w
             * self.surface_texture(material.maps[0], self.surface_uv(hit), -20.0).w
             * self.surface_color(hit).w
+    }
+
+    /// Emitted radiance at a hit: `spread` is that of [`SceneData::texture_sample`].
+    pub(crate) fn surface_emission(&self, hit: &Hit, spread: f32) -> Vec3 {
+        let material = self.material_load(self.corners_of(hit)[0].material);
+        material.emission * self.surface_texture(material.maps[3], self.surface_uv(hit), spread).truncate()
     }
 
     /// True if there is a hole at a hit.
@@ -148,7 +154,7 @@ impl SceneData {
     }
 
     /// The cross product of the edges of the triangle that was hit: its normal, as long as twice its area.
-    fn surface_edges(&self, hit: &Hit) -> Vec3 {
+    pub(crate) fn surface_edges(&self, hit: &Hit) -> Vec3 {
         let triangle = &self.triangles[hit.triangle as usize];
         Vec3::from(triangle.edge_1).cross(Vec3::from(triangle.edge_2))
     }

@@ -1,19 +1,40 @@
 //! The puddles of a weather, from picture to picture.
 
 use downpour_scene::picture::{Picture, Pixels};
-use downpour_weather::{Loaded, Puddle, PuddleShape, Weather};
+use downpour_weather::{Loaded, Puddle, PuddleFill, PuddleShape, Weather};
 use glam::{DVec3, Vec2, Vec3};
 
-use crate::puddle::{Ground, PuddleError, PuddleLook, PuddleMap, PuddleRows, Relief, Ripples};
+use crate::puddle::{
+    FillLimits, Filling, Ground, PuddleError, PuddleGround, PuddleLook, PuddleMap, PuddleRows, Relief,
+    Ripples,
+};
 use crate::stage::Stage;
 
 /// Mixed into the rain's seed, so that drops on water are not the drops in the air.
 const SEED: u64 = 0x7075_6464_6c65_0001;
 
+/// Depth of rain by which the water of a picture may be behind, m: maps are not made anew for each picture.
+const STEP_M: f64 = 2.0e-5;
+
+/// A puddle that the rain fills.
+#[derive(Debug)]
+struct Filled {
+    /// Index of the puddle.
+    index: usize,
+    ground: PuddleGround,
+    limits: FillLimits,
+    /// Depth of water that seeps away, m/s.
+    seepage: f64,
+    /// Present filling.
+    filling: Filling,
+}
+
 /// Puddles of a weather on the ground of its scene.
 #[derive(Debug)]
 pub struct WetGround {
+    weather: Weather,
     puddles: Vec<(PuddleMap, PuddleLook)>,
+    filled: Vec<Filled>,
     /// Origin of the maps' positions.
     origin: DVec3,
     ripples: Ripples,
@@ -38,9 +59,34 @@ impl WetGround {
         let law = (rain.rate_mm_h > 0.0).then(|| rain.sizes());
         let ripples = Ripples::new(law.transpose()?.as_ref(), rain.seed ^ SEED, first_s)?;
         let masks = loaded.masks.iter().map(Option::as_ref).chain(std::iter::repeat(None));
-        let puddles =
-            weather.puddles.iter().zip(masks).map(|(puddle, mask)| (map(puddle, mask, stage), look(puddle)));
-        Ok(Some(Self { puddles: puddles.collect(), origin: stage.origin, ripples }))
+        let (mut puddles, mut filled) = (Vec::new(), Vec::new());
+        for (index, (puddle, mask)) in weather.puddles.iter().zip(masks).enumerate() {
+            let ground = ground(puddle, stage);
+            let map = match (&puddle.shape, mask) {
+                (&PuddleShape::Found { fill, min_depth, relief, seed, cells }, _) => {
+                    let relief = Relief { rms_m: relief as f32, seed };
+                    let ground = PuddleGround::new(&stage.data, &ground, cells.map(|n| n as usize), &relief);
+                    let limits = FillLimits { deepest: puddle.depth as f32, least: min_depth as f32 };
+                    let (filling, seepage) = match fill {
+                        PuddleFill::Part(part) => (Filling::Fraction(part as f32), None),
+                        PuddleFill::Rain { seepage } => (filling(weather, seepage, first_s), Some(seepage)),
+                    };
+                    let map = ground.filled(&filling, &limits);
+                    filled.extend(seepage.map(|seepage| Filled { index, ground, limits, seepage, filling }));
+                    map
+                }
+                (PuddleShape::Painted(_), Some(mask)) => {
+                    let size = [mask.width as usize, mask.height as usize];
+                    PuddleMap::painted(&stage.data, &ground, size, &depths(mask, puddle.depth as f32))
+                }
+                // A mask that was not loaded: nothing is painted.
+                (PuddleShape::Painted(_), None) => {
+                    PuddleMap::painted(&stage.data, &ground, [2, 2], &[0.0; 4])
+                }
+            };
+            puddles.push((map, look(puddle)));
+        }
+        Ok(Some(Self { weather: weather.clone(), puddles, filled, origin: stage.origin, ripples }))
     }
 
     /// Steps the rain to a time in seconds; times must not decrease.
@@ -48,6 +94,13 @@ impl WetGround {
     /// # Errors
     /// As [`WetGround::new`].
     pub fn advance(&mut self, time_s: f64) -> Result<(), PuddleError> {
+        for puddle in &mut self.filled {
+            let now = filling(&self.weather, puddle.seepage, time_s);
+            if now != puddle.filling {
+                puddle.filling = now;
+                self.puddles[puddle.index].0 = puddle.ground.filled(&now, &puddle.limits);
+            }
+        }
         self.ripples.advance(time_s)
     }
 
@@ -67,26 +120,33 @@ impl WetGround {
     }
 }
 
-/// Map of the water of a puddle.
-fn map(puddle: &Puddle, mask: Option<&Picture>, stage: &Stage) -> PuddleMap {
-    let ground = Ground {
+/// The rectangle of a puddle.
+fn ground(puddle: &Puddle, stage: &Stage) -> Ground {
+    Ground {
         middle: (DVec3::from(puddle.middle) - stage.origin).as_vec3(),
         size: Vec2::from(puddle.size.map(|edge| edge as f32)),
         turn: puddle.turn as f32,
         reach: puddle.reach as f32,
+    }
+}
+
+/// The water that the rain of a weather has brought to hollows at a time: a function of time alone, in steps. Hollows under surfaces
+/// whose wetness is given, or that rain does not wet, are full.
+fn filling(weather: &Weather, seepage: f64, time_s: f64) -> Filling {
+    let Some([before, lost, since]) = weather.wetness.runoff(&weather.rain, time_s) else {
+        return Filling::Fraction(1.0);
     };
-    match (&puddle.shape, mask) {
-        (&PuddleShape::Found { fill, min_depth: least, relief, seed, cells }, _) => {
-            let relief = Relief { rms_m: relief as f32, seed };
-            let numbers = [fill, puddle.depth, least].map(|number| number as f32);
-            PuddleMap::found(&stage.data, &ground, cells.map(|n| n as usize), &relief, numbers)
-        }
-        (PuddleShape::Painted(_), Some(mask)) => {
-            let size = [mask.width as usize, mask.height as usize];
-            PuddleMap::painted(&stage.data, &ground, size, &depths(mask, puddle.depth as f32))
-        }
-        // A mask that was not loaded: nothing is painted.
-        (PuddleShape::Painted(_), None) => PuddleMap::painted(&stage.data, &ground, [2, 2], &[0.0; 4]),
+    let time_s = time_s.max(0.0);
+    let (dried_s, rained_s) = if weather.rain.rate_mm_h > 0.0 {
+        (weather.wetness.dried_s, time_s)
+    } else {
+        (weather.wetness.dried_s + time_s, 0.0)
+    };
+    let stepped = |depth: f64| ((depth / STEP_M).floor() * STEP_M) as f32;
+    Filling::Rain {
+        before_m: before as f32,
+        lost_m: stepped(lost + seepage * dried_s),
+        since_m: stepped((since - seepage * rained_s).max(0.0)),
     }
 }
 
@@ -106,5 +166,44 @@ fn look(puddle: &Puddle) -> PuddleLook {
         scattering_albedo: Vec3::from(puddle.color.map(|part| part as f32)),
         extinction: (1.0 / puddle.attenuation_length) as f32,
         ..PuddleLook::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(text: &str, time_s: f64) -> [f32; 3] {
+        let weather = Weather::parse("w.toml", text).expect("a weather");
+        match filling(&weather, 0.0, time_s) {
+            Filling::Rain { before_m, lost_m, since_m } => [before_m, lost_m, since_m],
+            Filling::Fraction(part) => panic!("filled to {part}"),
+        }
+    }
+
+    /// 30 mm/h bring 5 mm in ten minutes, of which 0.3 mm stay where they fall, and 0.5 mm in each minute from then on.
+    #[test]
+    fn puddles_fill_with_the_rain_and_dry_after_it() {
+        let rain = "[rain]\nrate_mm_h = 30";
+        let mut last = 0.0;
+        for minute in 0..60u8 {
+            let [before, lost, since] = at(rain, 60.0 * f64::from(minute));
+            assert!((before - 4.7e-3).abs() < 1.0e-6 && lost == 0.0 && since >= last);
+            assert!((since - 0.5e-3 * f32::from(minute)).abs() < 2.1e-5, "{minute}: {since}");
+            last = since;
+        }
+        let dry = "[rain]\nrate_mm_h = 0\n[wetness]\nrained_mm = 5";
+        let [before, lost, since] = at(dry, 3600.0);
+        // 0.3 mm in 9400 s.
+        assert!((before - 4.7e-3).abs() < 1.0e-6 && since == 0.0);
+        assert!((lost - 0.115e-3).abs() < 2.1e-5, "{lost}");
+    }
+
+    #[test]
+    fn where_wetness_is_given_hollows_are_full() {
+        for text in ["[wetness]\nwetness = 0.5", "[wetness]\nenabled = false"] {
+            let weather = Weather::parse("w.toml", text).expect("a weather");
+            assert_eq!(filling(&weather, 0.0, 9.0), Filling::Fraction(1.0), "{text}");
+        }
     }
 }

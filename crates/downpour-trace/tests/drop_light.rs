@@ -67,7 +67,7 @@ fn mean(
 }
 
 fn lamp(position: Vec3, intensity: Vec3) -> LightSource {
-    LightSource::Point { position, intensity, range: 0.0 }
+    LightSource::Point { radius: 0.0, position, intensity, range: 0.0 }
 }
 
 /// A direction at an angle in degrees from another, in a plane that does not lie along any axis.
@@ -290,6 +290,7 @@ fn im_sung_2022_lights_a_cone() -> Outcome {
     // A street lamp; a drop in the origin is `aside` of its axis and `below` it.
     let of = |aside: f32, below: f32, range: f32| {
         let spot = LightSource::Spot {
+            radius: 0.0,
             position: Vec3::new(-aside, below, 0.0),
             direction: Vec3::NEG_Y,
             intensity: Vec3::new(8.0, 4.0, 2.0),

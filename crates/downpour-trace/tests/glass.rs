@@ -367,7 +367,12 @@ fn lamps_throw_the_shadows_of_drops_on_a_sill() -> Outcome {
     };
     builder.add_mesh(&part, &Affine3A::IDENTITY);
     let lamp = Vec3::new(0.0, 1.5, -1.5);
-    builder.add_light(LightSource::Point { position: lamp, intensity: Vec3::splat(100.0), range: 0.0 });
+    builder.add_light(LightSource::Point {
+        radius: 0.0,
+        position: lamp,
+        intensity: Vec3::splat(100.0),
+        range: 0.0,
+    });
     stage.data = builder.build(&SkyLight::uniform([0.0; 3]));
     assert!(is_lit_through(&pane, &stage));
     // Straight down on the middle of the sill.

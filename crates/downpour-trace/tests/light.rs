@@ -75,7 +75,12 @@ fn an_unlit_wall_of_one_is_one() -> Outcome {
         };
         let wall = builder.add_material(look);
         square(&mut builder, wall, Vec3::ZERO, Vec3::X * 5.0, Vec3::Y * 5.0);
-        builder.add_light(LightSource::Point { position: Vec3::Z, intensity: Vec3::splat(9.0), range: 0.0 });
+        builder.add_light(LightSource::Point {
+            radius: 0.0,
+            position: Vec3::Z,
+            intensity: Vec3::splat(9.0),
+            range: 0.0,
+        });
         let scene = builder.build(&SkyLight::uniform([3.0; 3]));
         for pixel in picture(&scene, Vec3::new(0.4, 0.7, 3.0), Vec3::ZERO, 0.5, [8, 8], 1)? {
             for found in &pixel[..3] {
@@ -185,7 +190,7 @@ fn a_closed_room_has_the_light_of_all_its_reflections() -> Outcome {
                 square(&mut builder, wall, along(0) * side * 2.0, along(1) * 2.0, along(2) * -side * 2.0);
             }
         }
-        let scene = builder.build(&SkyLight::uniform([9.0; 3]));
+        let scene = builder.build(&SkyLight::uniform([5.0; 3]));
         let eye = Vec3::new(1.0, 0.5, 1.2);
         let found = mean(&picture(&scene, eye, Vec3::new(-1.0, -0.6, -1.0), 1.0, [32, 24], 2)?);
         let expected = 1.0 / (1.0 - f64::from(albedo));
@@ -242,7 +247,7 @@ fn a_lamp_has_one_mirror_image_in_a_puddle() -> Outcome {
         ..MaterialLook::default()
     };
     let (eye, position, depth) = (Vec3::new(0.0, 1.0, 2.0), Vec3::new(0.0, 1.2, -2.0), 0.04);
-    let lamp = LightSource::Point { position, intensity: Vec3::splat(10.0), range: 0.0 };
+    let lamp = LightSource::Point { radius: 0.0, position, intensity: Vec3::splat(10.0), range: 0.0 };
     let scene = puddle(metal, depth, 0.0, lamp);
     let view = Viewpoint { eye, forward: -eye, up: Vec3::Y, fov_y: 1.1 };
     let frame = RenderFrame::new(&scene, &view, [48, 96], 1, 1, 5)?;

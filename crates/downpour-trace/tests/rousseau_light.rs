@@ -32,7 +32,7 @@ fn drawn(
     let mut builder = SceneBuilder::new();
     // A lamp far away: a sun would be in the capture, too.
     let (position, intensity) = (from * 1.0e3, Vec3::splat(PI * 1.0e6));
-    builder.add_light(LightSource::Point { position, intensity, range: 0.0 });
+    builder.add_light(LightSource::Point { radius: 0.0, position, intensity, range: 0.0 });
     let scene = builder.build(&SkyLight::new(16, 8, &[[0.0; 3]; 16 * 8]));
     let drop = FallingDrop {
         position: DVec3::new(0.0, 0.0, -f64::from(AWAY)),

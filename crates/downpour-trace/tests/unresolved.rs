@@ -238,7 +238,7 @@ fn unresolved_drops_scatter_lamps_as_single_scattering_says() -> Outcome {
     let size = [16u32, 12];
     for lamp in [DVec3::new(1.0, 2.0, -12.0), DVec3::new(-3.0, 0.5, -4.0), DVec3::new(0.7, 1.0, 2.0)] {
         let position = lamp.as_vec3();
-        let light = LightSource::Point { position, intensity: Vec3::splat(1000.0), range: 0.0 };
+        let light = LightSource::Point { radius: 0.0, position, intensity: Vec3::splat(1000.0), range: 0.0 };
         let scene = walled(distance as f32, &[light], [0.0; 3]);
         let medium = RainMedium::new(&law(rate), &nothing_drawn(), masks, &MediumOptions::default())?;
         let seen = view(0.9);
@@ -272,6 +272,7 @@ fn shadows_and_cones_keep_light_from_unresolved_drops() -> Outcome {
     let masks = masks();
     let medium = RainMedium::new(&law(100.0), &nothing_drawn(), masks, &MediumOptions::default())?;
     let dark = LightSource::Point {
+        radius: 0.0,
         position: Vec3::new(0.0, 0.0, -21.0),
         intensity: Vec3::splat(1.0e4),
         range: 0.0,
@@ -280,6 +281,7 @@ fn shadows_and_cones_keep_light_from_unresolved_drops() -> Outcome {
     assert!(behind.iter().all(|pixel| pixel[..3] == [0.0; 3]));
     // Down from 10 m, 20 degrees wide: on a level ray lit from 10 - 3.64 to 10 + 3.64 m.
     let spot = LightSource::Spot {
+        radius: 0.0,
         position: Vec3::new(0.0, 10.0, -10.0),
         direction: Vec3::NEG_Y,
         intensity: Vec3::splat(1.0e4),
@@ -383,6 +385,7 @@ fn middle(
 #[test]
 fn the_same_rain_is_as_bright_from_every_view() -> Outcome {
     let light = LightSource::Point {
+        radius: 0.0,
         position: Vec3::new(0.4, 1.6, -12.0),
         intensity: Vec3::splat(1000.0),
         range: 0.0,

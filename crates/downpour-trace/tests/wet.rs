@@ -236,7 +236,12 @@ fn walls_are_wet_toward_the_wind() -> Outcome {
 #[test]
 fn a_dry_scene_is_the_same_to_the_bit() -> Outcome {
     let mut builder = ground(look(0.4, 0.85, 1.0));
-    builder.add_light(LightSource::Point { position: Vec3::Y * 2.0, intensity: Vec3::ONE, range: 0.0 });
+    builder.add_light(LightSource::Point {
+        radius: 0.0,
+        position: Vec3::Y * 2.0,
+        intensity: Vec3::ONE,
+        range: 0.0,
+    });
     let mut scene = builder.build(&SkyLight::uniform([1.0; 3]));
     let table = scene.table.clone();
     let shot = |scene: &SceneData| picture(scene, Vec3::new(1.0, 1.5, 2.0), Vec3::ZERO, 0.8, [24, 16], 1);

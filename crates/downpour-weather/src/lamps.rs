@@ -1,7 +1,7 @@
 //! `[[light]]`.
 
 use super::fault::Positions;
-use super::quantity::{Candela, ConeDeg, Exactly, In, Lux, Part, PositionM, RangeM, Tint};
+use super::quantity::{Candela, ConeDeg, Exactly, In, LampM, Lux, Part, PositionM, RangeM, Tint};
 use downpour_scene::error::SceneError;
 use glam::DVec3;
 use serde::Deserialize;
@@ -22,6 +22,8 @@ pub enum Lamp {
     Point {
         /// Position, in meters.
         position: DVec3,
+        /// Radius of its sphere, in meters; `None`: that of its glass in a model, or a point.
+        radius: Option<f64>,
         /// Tint, linear, 0 to 1.
         color: DVec3,
         /// Luminous intensity in candela.
@@ -33,6 +35,8 @@ pub enum Lamp {
     Spot {
         /// Position, in meters.
         position: DVec3,
+        /// Radius of its sphere, in meters; `None`: that of its glass in a model, or a point.
+        radius: Option<f64>,
         /// Unit direction of the light.
         direction: DVec3,
         /// Tint, linear, 0 to 1.
@@ -74,6 +78,7 @@ pub(super) struct PointTable {
     color: Color,
     intensity_cd: Option<In<Candela>>,
     range_m: Option<In<RangeM>>,
+    radius_m: Option<In<LampM>>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -86,6 +91,7 @@ pub(super) struct SpotTable {
     inner_deg: Option<In<ConeDeg>>,
     outer_deg: Option<In<ConeDeg>>,
     range_m: Option<In<RangeM>>,
+    radius_m: Option<In<LampM>>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -112,6 +118,7 @@ impl Lamp {
         match table {
             LampTable::Point(table) => Ok(Self::Point {
                 position: table.position_m.numbers().into(),
+                radius: table.radius_m.map(|radius| radius.0),
                 color: color(table.color),
                 intensity_cd: candela(table.intensity_cd),
                 range: table.range_m.map(|range| range.0),
@@ -129,6 +136,7 @@ impl Lamp {
                 }
                 Ok(Self::Spot {
                     position: table.position_m.numbers().into(),
+                    radius: table.radius_m.map(|radius| radius.0),
                     direction: unit(table.direction, "spot")?,
                     color: color(table.color),
                     intensity_cd: candela(table.intensity_cd),

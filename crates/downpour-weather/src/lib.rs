@@ -55,7 +55,7 @@ pub use lightning::{
 };
 pub use load::{Loaded, Roots, load};
 pub use models::{Model, Repeat};
-pub use puddle::{MAX_ALL_PUDDLE_CELLS, MAX_PUDDLE_CELLS, Puddle, PuddleShape};
+pub use puddle::{MAX_ALL_PUDDLE_CELLS, MAX_PUDDLE_CELLS, Puddle, PuddleFill, PuddleShape};
 pub use rain::{
     RAIN_BOX_M, Rain, RainBounce, RainCylinder, RainDrag, RainDropLight, RainDropShape, RainExtinction,
     RainRefraction, RainVolume,

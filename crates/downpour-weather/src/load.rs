@@ -378,22 +378,23 @@ fn copy(scene: &mut Scene, part: Range<usize>, animations: Range<usize>, transfo
 
 /// Adds a lamp to the scene.
 fn add_lamp(scene: &mut Scene, lamp: &Lamp) {
-    let (position, direction, color, intensity, range, kind) = match *lamp {
-        Lamp::Point { position, color, intensity_cd, range } => {
-            (position, DVec3::NEG_Z, color, intensity_cd, range, LightKind::Point)
+    let (position, direction, color, intensity, [range, radius], kind) = match *lamp {
+        Lamp::Point { position, radius, color, intensity_cd, range } => {
+            (position, DVec3::NEG_Z, color, intensity_cd, [range, radius], LightKind::Point)
         }
-        Lamp::Spot { position, direction, color, intensity_cd, inner, outer, range } => {
+        Lamp::Spot { position, radius, direction, color, intensity_cd, inner, outer, range } => {
             let kind = LightKind::Spot { inner: narrowed(inner), outer: narrowed(outer) };
-            (position, direction, color, intensity_cd, range, kind)
+            (position, direction, color, intensity_cd, [range, radius], kind)
         }
         Lamp::Directional { direction, color, illuminance_lux } => {
-            (DVec3::ZERO, direction, color, illuminance_lux, None, LightKind::Directional)
+            (DVec3::ZERO, direction, color, illuminance_lux, [None; 2], LightKind::Directional)
         }
     };
     let light = scene.lights.len();
     let intensity = narrowed(intensity);
-    let range = range.map(narrowed);
-    scene.lights.push(Light { name: String::new(), color: color.as_vec3(), intensity, range, kind });
+    let [range, radius] = [range, radius].map(|meters| meters.map(narrowed));
+    let color = color.as_vec3();
+    scene.lights.push(Light { name: String::new(), color, intensity, range, radius, kind });
     // Lights shine along -Z of their node.
     let rotation = DQuat::from_rotation_arc(DVec3::NEG_Z, direction);
     let local = Local::Matrix(single(&DAffine3::from_rotation_translation(rotation, position)));

@@ -3,12 +3,14 @@
 use super::fault::Positions;
 use super::file::path;
 use super::quantity::{
-    AttenuationM, Exactly, FieldCellMm, Fraction, In, Influence, PositionM, PuddleDepthMm, PuddleM,
-    PuddleReachM, ReliefMm, RippleScale, Tint, TurnDeg,
+    AttenuationM, Exactly, FieldCellMm, In, Influence, PositionM, PuddleDepthMm, PuddleM, PuddleReachM,
+    ReliefMm, RippleScale, SeepageMmH, Tint, TurnDeg,
 };
 use downpour_scene::error::SceneError;
 use downpour_scene::uri::RelativePath;
 use serde::Deserialize;
+use serde::de::{Deserializer, Error, Visitor};
+use std::fmt;
 
 /// Maximum number of cells along an edge of a puddle's map.
 pub const MAX_PUDDLE_CELLS: u32 = 2048;
@@ -19,13 +21,25 @@ pub const MAX_ALL_PUDDLE_CELLS: u64 = 1 << 22;
 /// Default edge of a cell, m.
 const CELL_M: f64 = 0.025;
 
+/// Water in the hollows of the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PuddleFill {
+    /// Filled fraction of their depth: 0 empty, 1 until they spill.
+    Part(f64),
+    /// What the rain of [`Wetness`](crate::Wetness) brings from their catchments.
+    Rain {
+        /// Depth of water that seeps away, m/s.
+        seepage: f64,
+    },
+}
+
 /// Shape of the water.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PuddleShape {
     /// In the hollows of the ground.
     Found {
-        /// Filled fraction of the hollows: 0 empty, 1 until they spill.
-        fill: f64,
+        /// Water in the hollows.
+        fill: PuddleFill,
         /// Minimum depth of hollows that hold water, m.
         min_depth: f64,
         /// Unevenness of the ground in addition to its model: root mean square of the height, m.
@@ -76,7 +90,8 @@ pub(super) struct PuddleTable {
     reach_m: Option<In<PuddleReachM>>,
     mask: Option<String>,
     depth_mm: Option<In<PuddleDepthMm>>,
-    fill: Option<In<Fraction>>,
+    fill: Option<FillKey>,
+    seepage_mm_h: Option<In<SeepageMmH>>,
     min_depth_mm: Option<In<PuddleDepthMm>>,
     relief_mm: Option<In<ReliefMm>>,
     seed: Option<u64>,
@@ -100,6 +115,7 @@ impl Puddle {
         let shape = if let Some(mask) = &table.mask {
             for (name, given) in [
                 ("fill", table.fill.is_some()),
+                ("seepage_mm_h", table.seepage_mm_h.is_some()),
                 ("min_depth_mm", table.min_depth_mm.is_some()),
                 ("relief_mm", table.relief_mm.is_some()),
                 ("seed", table.seed.is_some()),
@@ -121,7 +137,7 @@ impl Puddle {
                 return Err(positions.bad(&at("cell_mm"), format!("{width} x {depth} cells"), allowed));
             }
             PuddleShape::Found {
-                fill: table.fill.map_or(1.0, |fraction| fraction.0),
+                fill: fill(table, &at, positions)?,
                 min_depth: meters(table.min_depth_mm.map(|mm| mm.0), 1.5),
                 relief: meters(table.relief_mm.map(|mm| mm.0), 2.2),
                 seed: table.seed.unwrap_or(0),
@@ -142,6 +158,59 @@ impl Puddle {
             attenuation_length: table.attenuation_length_m.map_or(0.25, |m| m.0),
             color: table.color.map_or([0.12, 0.105, 0.08], Exactly::numbers),
         })
+    }
+}
+
+/// The water in the hollows of a puddle that is found.
+fn fill(
+    table: &PuddleTable,
+    at: &impl Fn(&str) -> String,
+    positions: &Positions<'_>,
+) -> Result<PuddleFill, SceneError> {
+    let rain =
+        || PuddleFill::Rain { seepage: table.seepage_mm_h.map_or(0.0, |rate| rate.0 * 1.0e-3 / 3600.0) };
+    match table.fill {
+        Some(FillKey(Some(_))) if table.seepage_mm_h.is_some() => {
+            Err(positions.bad(&at("seepage_mm_h"), "beside a fill that is given", "fill = \"rain\""))
+        }
+        Some(FillKey(Some(part))) => Ok(PuddleFill::Part(part)),
+        Some(FillKey(None)) | None => Ok(rain()),
+    }
+}
+
+/// A fraction, or `None` for the rain.
+#[derive(Clone, Copy, Debug)]
+struct FillKey(Option<f64>);
+
+impl<'de> Deserialize<'de> for FillKey {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Written;
+        impl Visitor<'_> for Written {
+            type Value = FillKey;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("\"rain\", or a number from 0 to 1")
+            }
+
+            fn visit_str<E: Error>(self, text: &str) -> Result<FillKey, E> {
+                if text == "rain" {
+                    return Ok(FillKey(None));
+                }
+                Err(E::custom(format_args!("{text:?}; allowed: \"rain\", or 0 to 1")))
+            }
+
+            fn visit_f64<E: Error>(self, part: f64) -> Result<FillKey, E> {
+                if (0.0..=1.0).contains(&part) {
+                    return Ok(FillKey(Some(part)));
+                }
+                Err(E::custom(format_args!("{part}; allowed: \"rain\", or 0 to 1")))
+            }
+
+            fn visit_i64<E: Error>(self, part: i64) -> Result<FillKey, E> {
+                self.visit_f64(part as f64)
+            }
+        }
+        deserializer.deserialize_any(Written)
     }
 }
 

@@ -70,6 +70,8 @@ ranges! {
     Scale: 1e-6, 1e6, "1e-6 to 1e6";
     Part: -1e9, 1e9, "-1e9 to 1e9";
     ConeDeg: 0.0, 89.9, "0 to 89.9 degrees";
+    SeepageMmH: 0.0, 1000.0, "0 to 1000 mm/h";
+    LampM: 0.0, 100.0, "0 to 100 m";
     RangeM: 1e-3, 1e7, "0.001 to 1e7 m";
     KeyTimeS: -1e6, 1e6, "-1e6 to 1e6 s";
     WindMS: 0.0, 200.0, "0 to 200 m/s";

@@ -93,6 +93,28 @@ impl Wetness {
         (found.level() > 0.0).then_some(found)
     }
 
+    /// Water that has run off level ground at a time in s, m: before the time in which nothing fell, lost by drying in that time, and
+    /// after it. `None` where no law says: hollows have been filled since long.
+    #[must_use]
+    pub fn runoff(&self, rain: &Rain, time_s: f64) -> Option<[f64; 3]> {
+        if !self.is_enabled || self.fixed.is_some() {
+            return None;
+        }
+        let rate_m_s = rain.rate_mm_h * 1.0e-3 / 3600.0;
+        let rained_m = self.rained_m.unwrap_or(rate_m_s * RAINED_S);
+        let time_s = time_s.max(0.0);
+        let (dried_s, since_m) =
+            if rate_m_s > 0.0 { (self.dried_s, rate_m_s * time_s) } else { (self.dried_s + time_s, 0.0) };
+        // What the ground stores first does not run off; dry ground stores it anew.
+        let dry = 1.0 - Wetting::new(self.storage_m, self.drying_s).unwrap_or_default().kept(dried_s);
+        let left = |fallen: f64, stored: f64| (fallen - stored).max(0.0);
+        Some([
+            left(rained_m, self.storage_m),
+            self.storage_m / self.drying_s * dried_s,
+            left(since_m, self.storage_m * dry),
+        ])
+    }
+
     pub(super) fn checked(
         table: &WetnessTable,
         rain: &Rain,

@@ -3,7 +3,7 @@
 #[path = "../../downpour-scene/tests/exit_code/mod.rs"]
 mod exit_code;
 use downpour_scene::Budget;
-use downpour_weather::{PuddleShape, Roots, Weather, load};
+use downpour_weather::{PuddleFill, PuddleShape, Roots, Weather, load};
 use exit_code::ExitCode as _;
 
 const ALL: &str = r"
@@ -39,14 +39,57 @@ fn every_key_arrives() {
     assert!((puddle.ripple_turn.to_degrees() - 90.0).abs() < 1.0e-9);
     assert_eq!((puddle.ripple_scale, puddle.ripple_influence, puddle.attenuation_length), (1.5, 0.5, 0.1));
     assert_eq!((puddle.depth, puddle.color), (0.04, [0.2, 0.15, 0.1]));
-    let found = PuddleShape::Found { fill: 0.7, min_depth: 0.002, relief: 0.003, seed: 8, cells: [200, 100] };
+    let found = PuddleShape::Found {
+        fill: PuddleFill::Part(0.7),
+        min_depth: 0.002,
+        relief: 0.003,
+        seed: 8,
+        cells: [200, 100],
+    };
     assert_eq!(puddle.shape, found);
+}
+
+#[test]
+fn rain_fills_by_default() {
+    let with = |line: &str| {
+        let text = format!("[[puddle]]\nposition_m = [0, 0, 0]\nsize_m = [4, 2]\n{line}\n");
+        let weather = Weather::parse("w.toml", &text).unwrap();
+        let PuddleShape::Found { fill, .. } = weather.puddles[0].shape else { panic!("{text}") };
+        fill
+    };
+    assert_eq!(with(""), PuddleFill::Rain { seepage: 0.0 });
+    let PuddleFill::Rain { seepage } = with("fill = \"rain\"\nseepage_mm_h = 3.6") else {
+        panic!("not by rain")
+    };
+    assert!((seepage - 1.0e-6).abs() < 1.0e-15);
+    assert_eq!((with("fill = 0"), with("fill = 1")), (PuddleFill::Part(0.0), PuddleFill::Part(1.0)));
+}
+
+/// Water that runs off: what fell but what the ground stores, then what dries, then the rain since.
+#[test]
+fn what_runs_off_is_what_the_ground_does_not_store() {
+    let text =
+        "[rain]\nrate_mm_h = 36\n[wetness]\nrained_mm = 5\nstorage_mm = 0.5\ndried_s = 1000\ndrying_s = 5000";
+    let weather = Weather::parse("w.toml", text).unwrap();
+    let [before, lost, since] = weather.wetness.runoff(&weather.rain, 500.0).unwrap();
+    // 5 mm less 0.5; a fifth of 0.5 mm dries; 36 mm/h for 500 s is 5 mm, of which the ground stores what has dried.
+    let stored = 0.5e-3 * (1.0 - (-0.2f64).exp());
+    for (found, expected) in [(before, 4.5e-3), (lost, 0.1e-3), (since, 5.0e-3 - stored)] {
+        assert!((found - expected).abs() < 1.0e-9, "{found}, {expected}");
+    }
+    let fixed = Weather::parse("w.toml", "[wetness]\nwetness = 0.5").unwrap();
+    assert_eq!(fixed.wetness.runoff(&fixed.rain, 0.0), None);
 }
 
 #[test]
 fn what_cannot_be_is_refused() {
     let with = |line: &str| format!("[[puddle]]\nposition_m = [0, 0, 0]\nsize_m = [4, 2]\n{line}\n");
-    says(&with("fill = 1.5"), 2, "line 4, column 8: puddle[0].fill: 1.5; allowed: 0 to 1");
+    says(&with("fill = 1.5"), 2, "line 4, column 8: puddle[0].fill: 1.5; allowed: \"rain\", or 0 to 1");
+    says(
+        &with("fill = 0.5\nseepage_mm_h = 2"),
+        2,
+        "line 5, column 1: puddle[0].seepage_mm_h: beside a fill that is given; allowed: fill = \"rain\"",
+    );
     says(
         &with("mask = \"m.png\"\nrelief_mm = 2"),
         2,

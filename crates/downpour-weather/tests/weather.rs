@@ -183,12 +183,14 @@ fn every_key_arrives_in_si() {
         [
             Lamp::Point {
                 position: DVec3::new(0.0, 3.0, 0.0),
+                radius: None,
                 color: DVec3::new(1.0, 0.9, 0.8),
                 intensity_cd: 800.0,
                 range: Some(20.0)
             },
             Lamp::Spot {
                 position: DVec3::new(0.0, 5.0, 0.0),
+                radius: None,
                 direction: DVec3::NEG_Y,
                 color: DVec3::Y,
                 intensity_cd: 50.0,

@@ -75,6 +75,7 @@ impl Host {
     fn record(&self, rain: &mut Rain, frame: u32) -> wgpu::CommandEncoder {
         let mut encoder = self.gpu.device().create_command_encoder(&Default::default());
         let lights = [LightSource::Point {
+            radius: 0.0,
             position: Vec3::new(0.0, 6.0, -8.0),
             intensity: Vec3::splat(400.0),
             range: 0.0,

@@ -147,6 +147,7 @@ impl App {
         rain.set_obstacles(&triangles(&blocks))?;
         let is_lamp = |block: &&Block| block.kind == 2.0;
         let lamps = blocks.iter().filter(is_lamp).map(|block| LightSource::Point {
+            radius: 0.0,
             position: (Vec3::from(block.low) + Vec3::from(block.high)) * 0.5,
             intensity: Vec3::new(36.0, 25.0, 14.0),
             range: 0.0,

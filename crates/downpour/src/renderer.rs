@@ -9,8 +9,10 @@ mod frame;
 mod on_gpu;
 mod shower_of_model;
 mod source;
+mod truth;
 
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 use crate::shower::{MovingEye, MovingScenery, Scenery, Shower, Still};
@@ -36,6 +38,8 @@ use drops::Drops;
 pub use error::RendererError;
 pub use frame::{Frame, PendingFrame};
 pub use source::Source;
+use truth::TruthOf;
+pub use truth::{PixelDrop, Truth};
 
 /// Options of frames.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,6 +54,8 @@ pub struct RendererOptions {
     pub atlas: Option<StreakAtlas>,
     /// True if each frame has its measured rain rate. That takes time.
     pub measure: bool,
+    /// True if each frame has the truth about its pixels ([`Frame::truth`]). That takes time, on the CPU.
+    pub truth: bool,
     /// Time of the first frame, s: puddles and panes have been rained on for a while by then.
     pub first_s: f64,
 }
@@ -57,7 +63,15 @@ pub struct RendererOptions {
 impl Default for RendererOptions {
     /// 2 x 2 samples with a ray to the sky each, from time 0 on.
     fn default() -> Self {
-        Self { samples: 2, sky_rays: 1, refraction: None, atlas: None, measure: false, first_s: 0.0 }
+        Self {
+            samples: 2,
+            sky_rays: 1,
+            refraction: None,
+            atlas: None,
+            measure: false,
+            truth: false,
+            first_s: 0.0,
+        }
     }
 }
 
@@ -81,7 +95,7 @@ pub struct Renderer {
     options: RendererOptions,
     /// The scene at the first time.
     first: Stage,
-    masks: DropMasks,
+    masks: Arc<DropMasks>,
     drawer: Drawer,
     shower: Shower,
     water: Option<Water>,
@@ -149,7 +163,7 @@ impl Renderer {
             loaded,
             options,
             first,
-            masks,
+            masks: Arc::new(masks),
             drawer,
             shower,
             water: None,
@@ -283,6 +297,10 @@ impl Renderer {
         };
         let flashes = self.flashes(time_s, &drops, told)?;
         let triangles = stage.triangles;
+        let truth = self.options.truth.then(|| {
+            let options = self.picture_options(&stage, time_s, medium.clone());
+            Box::new(TruthOf { masks: Arc::clone(&self.masks), options, stage })
+        });
         let begin_ms = begin.elapsed().as_secs_f64() * 1.0e3;
         Ok(PendingFrame {
             picture,
@@ -295,6 +313,7 @@ impl Renderer {
             medium,
             measured_rate_mm_h,
             exposure,
+            truth,
         })
     }
 

@@ -277,8 +277,12 @@ fn frames_repeat_to_the_bit_and_make_no_buffers() {
     let Some(gpu) = device() else { return };
     let mut rain = Rain::new(gpu.device(), gpu.queue(), settings()).unwrap();
     let host = Host::new(&gpu, SIZE, wgpu::TextureFormat::Rgba16Float);
-    let lamp =
-        LightSource::Point { position: Vec3::new(1.0, 3.0, -8.0), intensity: Vec3::splat(60.0), range: 0.0 };
+    let lamp = LightSource::Point {
+        radius: 0.0,
+        position: Vec3::new(1.0, 3.0, -8.0),
+        intensity: Vec3::splat(60.0),
+        range: 0.0,
+    };
     let first = host.rain(&mut rain, &view(), 6.0, &[lamp]).unwrap();
     let made = |rain: &mut Rain, time_s| {
         let mut encoder = gpu.device().create_command_encoder(&Default::default());
@@ -451,7 +455,7 @@ fn what_is_too_much_is_an_error_or_drawn_as_what_is_not_resolved() {
     let mut rain = Rain::new(gpu.device(), gpu.queue(), settings()).unwrap();
     let error = rain.set_obstacles(&vec![[[0.0; 3]; 3]; 10_000_000]).map(|_| ()).unwrap_err();
     assert_eq!(error.to_string(), "10000000 triangles; allowed: up to 4194304");
-    let lamp = LightSource::Point { position: Vec3::ZERO, intensity: Vec3::ONE, range: 0.0 };
+    let lamp = LightSource::Point { radius: 0.0, position: Vec3::ZERO, intensity: Vec3::ONE, range: 0.0 };
     let host = Host::new(&gpu, SIZE, wgpu::TextureFormat::Rgba16Float);
     let error = host.rain(&mut rain, &view(), 6.0, &vec![lamp; 2000]).map(|_| ()).unwrap_err();
     assert_eq!(error.to_string(), "2000 lights; allowed: up to 1024");

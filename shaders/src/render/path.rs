@@ -25,6 +25,8 @@ shared_constants! {
         PATH_LATTICE_THIRD: u32 = 37;
         /// Largest distance of a ray's numbers from the lattice's point: about the distance of neighboring points.
         PATH_JITTER: f32 = 0.14;
+        /// Distance of the lattice's points along one axis: one over the pixels of the filter's window.
+        PATH_BETWEEN: f32 = 0.020408163;
         /// Rays that follow each other, at most.
         PATH_BOUNCES: u32 = 6;
         /// Cosine of the angle between facets up to which a surface is the same.
@@ -68,8 +70,12 @@ shared_constants! {
         PATH_SECONDARY_ROUGHNESS: f32 = 0.25;
         /// Maximum specular reflectance in that simplified form.
         PATH_SECONDARY_MAX_SPECULAR: f32 = 0.05;
-        /// Roughness of a path from which lamps stand for what shines.
+        /// Roughness of a gloss from which what shines is drawn as a light and not met by rays.
         PATH_SHINES: f32 = 0.6;
+        /// Minimum occlusion of a material that is taken back from light of lamps.
+        PATH_OCCLUSION: f32 = 0.05;
+        /// Makes other numbers of those of a ray.
+        PATH_OTHER: f32 = 61.0;
         /// Lamps that are drawn for all where a mirror shows a surface.
         PATH_MIRROR_LAMPS: u32 = 4;
         /// Part of all rays that one is which has met a surface.

@@ -7,6 +7,7 @@ use super::camera::CAMERA;
 use super::pane_shadow::PANE_SHADOW;
 use super::path::PATH;
 use super::puddle_water::PUDDLE_WATER;
+use super::scatter::SCATTER;
 use super::table::{LIGHT, MATERIAL};
 use super::wet::WET;
 use crate::bvh::BVH;
@@ -16,7 +17,7 @@ use crate::{Kernel, Module};
 
 /// Every module of this file.
 pub const MODULES: &[&Module] =
-    &[&SCENE_CONSTANTS, &DATA, &TEXTURE, &SKY, &SURFACE, &SCENE, &CAPTURE, &TRACE, &SKYLIGHT];
+    &[&SCENE_CONSTANTS, &DATA, &TEXTURE, &SKY, &SURFACE, &EMITTER, &SCENE, &CAPTURE, &TRACE, &SKYLIGHT];
 
 /// Every kernel of this file.
 pub const KERNELS: &[&Kernel] = &[&TRACE_KERNEL, &SKYLIGHT_KERNEL];
@@ -42,6 +43,8 @@ shared_constants! {
         SURFACE_OPEN: f32 = 0.002;
         /// Material flag: the base color is what is seen, without light.
         SCENE_UNLIT: u32 = 8;
+        /// Material flag: shining glass for which a lamp stands.
+        SCENE_LAMP_GLASS: u32 = 16;
         /// Roughness up to which a surface has no pores.
         SURFACE_DENSE: f32 = 0.45;
         /// Roughness from which a surface is porous all over.
@@ -60,6 +63,40 @@ shared_constants! {
         SCENE_LIGHT_DIRECTIONAL: u32 = 0;
         /// Light kind: from a point, in a cone (a point light's cone is everything).
         SCENE_LIGHT_POINT: u32 = 1;
+        /// Light kind: such a lamp whose glass is in the model, and shines.
+        SCENE_LIGHT_BODY: u32 = 2;
+        /// Light kind: from a place of a surface that shines; never in the table.
+        SCENE_LIGHT_AREA: u32 = 3;
+        /// Largest half angle of a lamp's disk, radians: from within its sphere.
+        LIGHT_LARGEST_SPREAD: f32 = 1.5;
+        /// Rays toward a lamp with a size that gives much.
+        SCENE_LAMP_RAYS: u32 = 4;
+        /// Bits of their numbers.
+        SCENE_LAMP_BITS: u32 = 2;
+        /// Part of what all lamps would give from which one has as many rays; others have one.
+        SCENE_LARGE_LAMP: f32 = 0.1;
+        /// Part of the way to a lamp where things are taken to stand that throw its shadows.
+        SCENE_SHADOW_PART: f32 = 0.25;
+        /// Maximum distance of these, m.
+        SCENE_SHADOW_M: f32 = 5.0;
+        /// Width of a shadow's edge up to which it is sharp, in pixels; from twice that on, means over neighbors are taken of it.
+        SCENE_SHARP_PIXELS: f32 = 4.0;
+        /// Minimum cosine of the angle of view for the image of a lamp.
+        SCENE_MIN_COSINE: f32 = 0.05;
+        /// Difference of what two rays toward a lamp let through up to which all do the same.
+        SCENE_SAME_SHADOW: f32 = 0.01;
+        /// Roughness below which a gloss shows the glass of a lamp; from it on, the lamp's lobe.
+        SCENE_SEEN_BODY: f32 = 0.2;
+        /// Words of a node of the tree of surfaces that shine.
+        EMITTER_WORDS: u32 = 8;
+        /// Nodes from the tree's root to a triangle, at most.
+        EMITTER_DEPTH: u32 = 32;
+        /// Minimum cosine at the surface for which the weight of such surfaces allows.
+        EMITTER_GRAZING: f32 = 0.03;
+        /// Square of the distance below which that weight does not grow, m^2.
+        EMITTER_NEAREST: f32 = 1.0e-4;
+        /// Square of the distance from a place within which its light does not grow, per area that it stands for.
+        EMITTER_NEAR: f32 = 0.015625;
         /// See-through surfaces that a ray passes before it ends.
         SCENE_LAYERS: u32 = 12;
         /// Levels of the sky: the map itself, and means of it down to 4 rows from 16384.
@@ -129,11 +166,30 @@ pub static SURFACE: Module = Module {
     uses: &[&DATA, &MATERIAL, &TEXTURE, &BVH],
 };
 
+/// Surfaces that shine, as lights. Twin: `downpour_trace::emitter`.
+pub static EMITTER: Module = Module {
+    path: "render/emitter.wgsl",
+    wgsl: include_str!("../../wgsl/render/emitter.wgsl"),
+    uses: &[&DATA, &LIGHT, &BVH],
+};
+
 /// The light of lamps in a scene. Twin: `downpour_trace::scene`.
 pub static SCENE: Module = Module {
     path: "render/scene.wgsl",
     wgsl: include_str!("../../wgsl/render/scene.wgsl"),
-    uses: &[&DATA, &LIGHT, &MATERIAL, &SURFACE, &BRDF, &OPTICS, &PANE_SHADOW, &PUDDLE_WATER, &WET],
+    uses: &[
+        &DATA,
+        &LIGHT,
+        &MATERIAL,
+        &SURFACE,
+        &EMITTER,
+        &BRDF,
+        &OPTICS,
+        &PANE_SHADOW,
+        &PUDDLE_WATER,
+        &SCATTER,
+        &WET,
+    ],
 };
 
 /// Pixels of the picture and of the capture. Twin: `downpour_trace::trace`.

@@ -30,7 +30,8 @@ struct RenderFrame {
     skylight_pass: u32,
     // Row of the table where the wetness of surfaces begins; 0: all is dry.
     wetness: u32,
-    unused_2: u32,
+    // Word of the texels where the tree of surfaces that shine begins; 0: none shine.
+    emitters: u32,
     // Width, height and first texel of each level of the sky.
     sky_levels: array<vec4u, SCENE_SKY_LEVELS>,
     // Irradiance of the sky over pi as spherical harmonics of degree 2.

@@ -4,9 +4,9 @@
 // A lamp or the sun.
 struct RenderLight {
     position: vec3f,
-    // SCENE_LIGHT_DIRECTIONAL or SCENE_LIGHT_POINT.
+    // SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_POINT, SCENE_LIGHT_BODY or SCENE_LIGHT_AREA.
     kind: u32,
-    // Direction in which the light goes, or the axis of the cone.
+    // Direction in which the light goes, the axis of the cone, or an area's normal.
     axis: vec3f,
     // Chord from the middle to the edge of the disk that a drop shows of it; 0: that of the sun.
     chord: f32,
@@ -16,6 +16,8 @@ struct RenderLight {
     range: f32,
     // Scale and offset of the cosine at the edge of the cone.
     cone: vec2f,
+    // Radius of the lamp, meters; 0: a point. Of a place of an area: distance within which its light does not grow.
+    radius: f32,
 }
 
 // Light of a lamp at a point.
@@ -35,8 +37,8 @@ fn light_load(index: u32) -> RenderLight {
     let position = render_table[row];
     let axis = bitcast<vec4f>(render_table[row + 1u]);
     let color = bitcast<vec4f>(render_table[row + 2u]);
-    let cone = bitcast<vec2f>(render_table[row + 3u].xy);
-    return RenderLight(bitcast<vec3f>(position.xyz), position.w, axis.xyz, axis.w, color.rgb, color.w, cone);
+    let cone = bitcast<vec3f>(render_table[row + 3u].xyz);
+    return RenderLight(bitcast<vec3f>(position.xyz), position.w, axis.xyz, axis.w, color.rgb, color.w, cone.xy, cone.z);
 }
 
 // The light at a point. A lamp that is nearer than `least` is as bright as from there.
@@ -45,7 +47,8 @@ fn light_sample(light: RenderLight, point: vec3f, least: f32) -> LightSample {
         return LightSample(-light.axis, SCENE_FAR, light.color, PANE_SHADOW_SUN);
     }
     let offset = light.position - point;
-    let square = max(dot(offset, offset), max(least * least, 1.0e-8));
+    let inside = max(least, light.radius);
+    let square = max(dot(offset, offset), max(inside * inside, 1.0e-8));
     let distance = sqrt(max(dot(offset, offset), 1.0e-8));
     let direction = offset / distance;
     // glTF's window: no light beyond the range, if there is one.
@@ -53,8 +56,13 @@ fn light_sample(light: RenderLight, point: vec3f, least: f32) -> LightSample {
     let fourth = part * part * part * part;
     let ranged = clamp(1.0 - fourth, 0.0, 1.0);
     let window = select(1.0, ranged, light.range > 0.0);
-    let edge = clamp(dot(-direction, light.axis) * light.cone.x + light.cone.y, 0.0, 1.0);
-    return LightSample(direction, distance, light.color * (window * edge * edge / square), 0.0);
+    let cosine = dot(-direction, light.axis);
+    let edge = clamp(cosine * light.cone.x + light.cone.y, 0.0, 1.0);
+    // An area shines to both sides.
+    let is_area = light.kind == SCENE_LIGHT_AREA;
+    let shape = select(edge * edge, abs(cosine), is_area);
+    let spread = select(min(light.radius / distance, LIGHT_LARGEST_SPREAD), 0.0, is_area);
+    return LightSample(direction, distance, light.color * (window * shape / square), spread);
 }
 
 // Sum of a color's parts, by which lights are compared.

@@ -346,6 +346,11 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
         var light = PathLight();
         light.distance = -1.0;
         var direct = vec3f(0.0);
+        // Light of surfaces that shine, on its diffuse base, over pi, and whether lamps are hidden in part.
+        var glow = vec3f(0.0);
+        var soft = false;
+        // Part of that light that the relief of the surface leaves.
+        var relief = 1.0;
         var told = false;
         var slack = 0.0;
         var of_water = false;
@@ -358,6 +363,8 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
             var view = -towards;
             var leaves = select(PATH_FIRST, PATH_STRAIGHT, turn == 0u);
             var given = vec3f(0.0);
+            // Roughness of the gloss that the ray follows.
+            var followed = 1.0;
             let is_mirror = turn <= plan.mirrors;
             let of_shown = plan.replaced && is_mirror;
             for (var bounce = 0u; bounce < PATH_BOUNCES; bounce += 1u) {
@@ -385,14 +392,19 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                         }
                         ray = next;
                         ray.width += cone + plan.spread;
+                        followed = at.roughness;
                     } else if leaves == PATH_MIRROR {
                         next.mirror = ray.mirror * brdf_fresnel(at.normal_reflectance, max(dot(at.normal, view), 0.0));
                         next.width += ray.width;
                         ray = next;
-                    } else if leaves == PATH_SHOWN {
-                        ray = path_replaced(ray, next);
+                        followed = max(followed, at.roughness);
                     } else {
-                        ray = path_onward(ray, next, at, numbers.z);
+                        if leaves == PATH_SHOWN {
+                            ray = path_replaced(ray, next);
+                        } else {
+                            ray = path_onward(ray, next, at, numbers.z);
+                        }
+                        followed = 1.0;
                     }
                     if path_max(ray.diffuse + ray.mirror) <= 0.0 {
                         break;
@@ -401,7 +413,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                 let hit = surface_hit(from_position, ray.along, nearest, BVH_FAR);
                 if hit.distance < 0.0 {
                     if turn == 0u {
-                        path.radiance += throughput * sky_level(0u, towards);
+                        path.radiance += throughput * (sky_level(0u, towards) + scene_suns(towards));
                         return path;
                     }
                     light = path_accumulated(light, ray, sky_cone(ray.along, ray.width), of_shown);
@@ -423,7 +435,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                 var lamps = 0u;
                 var standoff = 0.0;
                 var depth = vec2f(0.0);
-                var shines = true;
+                var emission = found.emission;
                 if turn == 0u {
                     let material = render_corners[hit.triangle * 3u].material;
                     var distance = hit.distance;
@@ -460,14 +472,38 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     found = path_secondary(found, ray.roughness);
                     lamps = select(1u, PATH_MIRROR_LAMPS, ray.roughness < PATH_SECONDARY_ROUGHNESS);
                     standoff = hit.distance * ray.width * 0.5;
-                    // Lamps, if there are any, stand for emissive surfaces; small bright surfaces would be noise.
-                    shines = ray.roughness < PATH_SHINES || render_frame.light_count == 0u;
+                    // Surfaces that shine are lights: rays see them in a gloss only.
+                    emission = vec3f(0.0);
+                    if followed < select(PATH_SHINES, SCENE_SEEN_BODY, (found.flags & SCENE_LAMP_GLASS) != 0u) {
+                        light.mirror += ray.mirror * found.emission * path_cover(found);
+                    }
                 }
                 let unlit = (found.flags & SCENE_UNLIT) != 0u;
                 var lit = found.diffuse;
                 if !unlit {
-                    lit = select(vec3f(0.0), found.emission, shines)
-                        + scene_direct(found, -ray.along, lamps, numbers.w, standoff, depth);
+                    let is_lamp = (found.flags & SCENE_LAMP_GLASS) != 0u;
+                    if is_lamp && render_frame.projection != SCENE_PICTURE && render_frame.suns_out > 0u {
+                        // Drops are lit by lamps on their own.
+                        emission = vec3f(0.0);
+                    }
+                    var chances = vec4f(fract(numbers.xyz * PATH_OTHER), numbers.w);
+                    if turn == 0u {
+                        // The lattice has few points along its third axis: each pixel is somewhere between them.
+                        let first = path_lattice_numbers(random, 0u, 0u, 0u, 1u);
+                        // Of lamps no means over neighbors are taken, where a lattice would be seen.
+                        chances = vec4f(first.xy, fract(first.w + first.z * PATH_BETWEEN), first.z);
+                    }
+                    let lamplight = scene_direct(
+                        found, -ray.along, lamps, chances, standoff, depth, turn == 0u, cone * hit.distance,
+                    );
+                    lit = emission + lamplight.lit;
+                    if turn == 0u {
+                        // What is told apart goes with the rest of the light on the diffuse base, which has the material's occlusion.
+                        glow = lamplight.glow / max(found.occlusion, PATH_OCCLUSION);
+                        soft = lamplight.is_soft;
+                        let rest = max(light_weight(sky_irradiance(found.normal)), 1.0e-9);
+                        relief = (rest + lamplight.relief_light) / (rest + lamplight.flat_light);
+                    }
                 }
                 if turn == 0u {
                     surface = found;
@@ -563,23 +599,28 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
         path.radiance += throughput * direct * cover;
         if (surface.flags & SCENE_UNLIT) == 0u {
             let rays_of_gloss = select(plan.mirrors, plan.rays, plan.chance > 0.0);
-            var base = light.base / f32(max(plan.rays, 1u));
+            var base = light.base / f32(max(plan.rays, 1u)) + glow;
             var mirror = light.mirror / f32(max(rays_of_gloss, 1u));
+            if surface.roughness >= PATH_SHINES {
+                // The widest lobes see of what shines about what the diffuse base sees.
+                mirror += glow;
+            }
             if plan.mirrors + plan.rays == 0u {
-                base = sky_irradiance(surface.normal);
+                base = sky_irradiance(surface.normal) + glow;
                 mirror = sky_cone(mirrored, scatter_mirror(surface, -towards).width);
             } else if plan.mirrors == 0u && plan.chance == 0.0 {
                 // Too faint to trace rays for it.
+                base -= glow * plan.gloss / max(plan.body + plan.gloss, vec3f(1.0e-9));
                 plan.body += plan.gloss;
                 plan.gloss = vec3f(0.0);
             }
-            let of_base = throughput * plan.body * cover;
+            let of_base = throughput * plan.body * (cover * relief);
             let of_gloss = throughput * plan.gloss * cover;
             if told {
                 path.base = PathSlot(base, slack, of_base, 0.0, surface.normal, surface.position);
                 let mirrors = plan.mirrors > 0u && (surface.roughness < PATH_CURVED || !plan.kept)
                     && path_max(plan.gloss) > PATH_PLAIN_GLOSS;
-                path.plain = !(mirrors || layer > 0u);
+                path.plain = !(mirrors || layer > 0u || soft);
             } else {
                 path.radiance += of_base * base;
             }

@@ -5,6 +5,8 @@
 override SCENE_WET: bool = true;
 // True if a pane throws shadows: likewise.
 override SCENE_PANE: bool = true;
+// True if surfaces shine: likewise.
+override SCENE_SHINES: bool = true;
 
 // Light of a lamp that arrives at a surface, in air or under water.
 struct SceneArrival {
@@ -24,6 +26,19 @@ struct SceneArrival {
     irradiance: vec3f,
 }
 
+// Light of lamps, and of surfaces that shine, at a surface.
+struct SceneDirect {
+    // Toward the viewer.
+    lit: vec3f,
+    // On the diffuse base, over pi: of surfaces that shine, and of lamps with soft shadows. Means over neighbors are taken of it.
+    glow: vec3f,
+    // What lamps of the latter give if nothing hides them: to the facet, and to the surface with its relief.
+    flat_light: f32,
+    relief_light: f32,
+    // True if another lamp is hidden in part.
+    is_soft: bool,
+}
+
 // Fraction of light that reaches a position from a distance along a direction: surfaces that let light through dim it.
 fn scene_visibility(position: vec3f, direction: vec3f, distance: f32) -> vec3f {
     var from_distance = render_frame.nearest;
@@ -34,7 +49,9 @@ fn scene_visibility(position: vec3f, direction: vec3f, distance: f32) -> vec3f {
             return visible;
         }
         let material = material_load(render_corners[hit.triangle * 3u].material);
-        if (material.flags & SCENE_BLENDED) != 0u {
+        if (material.flags & SCENE_LAMP_GLASS) != 0u {
+            // The light of a lamp begins in its glass.
+        } else if (material.flags & SCENE_BLENDED) != 0u {
             visible *= 1.0 - clamp(surface_alpha(material, hit), 0.0, 1.0);
         } else if material.transmission > 0.0 {
             visible *= material.base.rgb * material.transmission;
@@ -46,12 +63,12 @@ fn scene_visibility(position: vec3f, direction: vec3f, distance: f32) -> vec3f {
     return vec3f(0.0);
 }
 
-// Light of row `index` as it arrives at a surface.
+// Light of a lamp as it arrives at a surface.
 // `standoff`: a lamp that is nearer to the surface's plane than this gives it the same light from so far: a spot close to a
 // lamp is small, and far brighter than all around it. `under`: the depth of level water over the surface, and how far the
 // water's surface is over it in the model; light is refracted where it enters, and what Fresnel's equations do not reflect
 // goes in.
-fn scene_arrival(index: u32, surface: Surface, standoff: f32, under: vec2f) -> SceneArrival {
+fn scene_arrival(lamp: RenderLight, surface: Surface, standoff: f32, under: vec2f) -> SceneArrival {
     var position = surface.position;
     var light = LightSample();
     var arrival = SceneArrival();
@@ -64,7 +81,7 @@ fn scene_arrival(index: u32, surface: Surface, standoff: f32, under: vec2f) -> S
                 position = surface.position + vec3f(0.0, under.y, 0.0) + puddle_water_entry(light.direction, under.x);
             }
         }
-        light = light_sample(light_load(index), position, 0.0);
+        light = light_sample(lamp, position, 0.0);
         if k == 0u {
             let start = position + surface.facet * render_frame.nearest;
             arrival = SceneArrival(
@@ -96,12 +113,12 @@ fn scene_arrival(index: u32, surface: Surface, standoff: f32, under: vec2f) -> S
 }
 
 // Light of one lamp on a surface, toward the viewer, if nothing is between them.
-// `out`: wet_out toward the viewer, of a surface with a film.
-fn scene_lamp(surface: Surface, view: vec3f, light: SceneArrival, out: vec3f) -> vec3f {
+// `out`: wet_out toward the viewer, of a surface with a film; `seen`: rays of the gloss see the lamp itself.
+fn scene_lamp(surface: Surface, view: vec3f, light: SceneArrival, out: vec3f, seen: bool) -> vec3f {
     if dot(surface.facet, light.direction) <= 0.0 {
         return vec3f(0.0);
     }
-    let alpha = max(surface.roughness * surface.roughness, SCENE_MIN_ROUGHNESS * SCENE_MIN_ROUGHNESS);
+    let alpha = scene_alpha(surface.roughness, light.spread, dot(surface.normal, view));
     var base = surface.diffuse * light.diffuse;
     var under = vec3f(0.0);
     if WET_SURFACES && surface.film > 0.0 {
@@ -109,18 +126,120 @@ fn scene_lamp(surface: Surface, view: vec3f, light: SceneArrival, out: vec3f) ->
         under = base * out * wet_in(surface, cosine) * (surface.film * cosine);
         base *= 1.0 - surface.film;
     }
+    if seen {
+        let sum = view + light.direction;
+        let halfway = sum / max(sqrt(dot(sum, sum)), BRDF_MIN_DIVISOR);
+        let fresnel = brdf_fresnel(surface.normal_reflectance, clamp(dot(view, halfway), 0.0, 1.0));
+        return light.irradiance * (under + (vec3f(1.0) - fresnel) * base * max(dot(surface.normal, light.direction), 0.0));
+    }
     return light.irradiance * (under + brdf_direct(
         base, surface.normal_reflectance, alpha, surface.normal, view, light.direction,
     ));
 }
 
-// Light of lamps and sun on a surface, toward the viewer. With `draws` of 0, or of at least as many as there are, all lamps
-// are asked whether something hides them; else so many are drawn by what each would give (`chance` in [0, 1)), for all of
-// them. `standoff` and `under`: scene_arrival.
-fn scene_direct(surface: Surface, view: vec3f, draws: u32, chance: f32, standoff: f32, under: vec2f) -> vec3f {
-    let count = render_frame.light_count;
-    let few = draws > 0u && draws < count;
+// Part of the light of a lamp whose shadows are wide on the picture, 0 to 1: as if what throws them stood a part of the way to it.
+fn scene_softness(distance: f32, spread: f32, footprint: f32) -> f32 {
+    let away = min(distance * SCENE_SHADOW_PART, SCENE_SHADOW_M);
+    let width = 2.0 * spread * away / max(footprint, 1.0e-9);
+    return clamp((width - SCENE_SHARP_PIXELS) / SCENE_SHARP_PIXELS, 0.0, 1.0);
+}
+
+// Radiance of the disks of suns that the picture shows in a direction.
+fn scene_suns(direction: vec3f) -> vec3f {
     var sum = vec3f(0.0);
+    if render_frame.projection != SCENE_PICTURE {
+        return sum;
+    }
+    for (var k = 0u; k < render_frame.light_count; k += 1u) {
+        let lamp = light_load(k);
+        let apart = direction + lamp.axis;
+        // A disk whose edge is a chord away takes pi times its square of the sphere.
+        let square = lamp.chord * lamp.chord;
+        if lamp.kind == SCENE_LIGHT_DIRECTIONAL && dot(apart, apart) < square {
+            sum += lamp.color / square;
+        }
+    }
+    return sum;
+}
+
+// Alpha of the lobe in which a surface shows a disk of a half angle: that of a mirror is as bright as the disk. Seen at a small
+// angle, a lobe is narrower across.
+fn scene_alpha(roughness: f32, spread: f32, cosine_view: f32) -> f32 {
+    let square = roughness * roughness;
+    let least = SCENE_MIN_ROUGHNESS * SCENE_MIN_ROUGHNESS;
+    let disk = 0.25 * spread * spread / max(cosine_view, SCENE_MIN_COSINE);
+    return min(sqrt(max(square * square + disk, least * least)), 1.0);
+}
+
+// Light that a place of a surface that shines gives to the diffuse base of a surface, over pi and the albedo.
+fn scene_glow(surface: Surface, view: vec3f, light: SceneArrival, out: vec3f) -> vec3f {
+    let cosine = dot(surface.normal, light.direction);
+    if cosine <= 0.0 || dot(surface.facet, light.direction) <= 0.0 {
+        return vec3f(0.0);
+    }
+    let sum = view + light.direction;
+    let halfway = sum / max(sqrt(dot(sum, sum)), BRDF_MIN_DIVISOR);
+    let fresnel = brdf_fresnel(surface.normal_reflectance, clamp(dot(view, halfway), 0.0, 1.0));
+    var enters = vec3f(1.0) - fresnel;
+    if WET_SURFACES && surface.film > 0.0 {
+        enters += (out * wet_in(surface, cosine) - enters) * surface.film;
+    }
+    return light.irradiance * enters * (cosine * light.diffuse);
+}
+
+// Fraction of the light of a lamp that reaches a surface: the mean over `rays` to places on its disk. The last component is 1 if
+// they differ.
+fn scene_shadow(light: SceneArrival, numbers: vec2f, rays: u32) -> vec4f {
+    let tangent = scatter_tangent(light.along);
+    let other = cross(light.along, tangent);
+    var sum = vec3f(0.0);
+    var least = vec3f(1.0);
+    var most = vec3f(0.0);
+    for (var k = 0u; k < rays; k += 1u) {
+        var along = light.along;
+        var distance = light.distance;
+        if light.spread > 0.0 {
+            let offset = scene_disk(numbers, k) * light.spread;
+            let bent = along + tangent * offset.x + other * offset.y;
+            let longer = sqrt(dot(bent, bent));
+            along = bent / longer;
+            distance = select(distance * longer, distance, distance >= SCENE_FAR);
+        }
+        let visible = scene_visibility(light.start, along, distance);
+        sum += visible;
+        least = min(least, visible);
+        most = max(most, visible);
+    }
+    let apart = most - least;
+    let differ = max(apart.x, max(apart.y, apart.z)) > SCENE_SAME_SHADOW;
+    return vec4f(sum / f32(rays), select(0.0, 1.0, differ));
+}
+
+// Place k on a unit disk.
+fn scene_disk(numbers: vec2f, k: u32) -> vec2f {
+    let inverse = f32(reverseBits(k) >> (32u - SCENE_LAMP_BITS)) / f32(SCENE_LAMP_RAYS);
+    let radius = sqrt(fract(numbers.x + inverse));
+    let angle = 6.2831853 * (numbers.y + 0.5 * f32(k) + 0.25 * f32(k / 2u));
+    return vec2f(radius * cos(angle), radius * sin(angle));
+}
+
+// Light of lamps, sun, and surfaces that shine on a surface. With `draws` of 0, or of at least as many as there are, all lamps
+// are asked whether something hides them; else so many are drawn by what each would give (`numbers.w` in [0, 1)), for all of
+// them. A place of a surface that shines is drawn with the first three numbers, and is one of the lamps. `is_first`: the surface
+// is what the camera sees: light without hard shadows is told apart, and rays of its gloss see what shines. `footprint`: width of
+// the pixel there, m. `standoff` and `under`: scene_arrival.
+fn scene_direct(
+    surface: Surface, view: vec3f, draws: u32, numbers: vec4f, standoff: f32, under: vec2f, is_first: bool, footprint: f32,
+) -> SceneDirect {
+    var result = SceneDirect(vec3f(0.0), vec3f(0.0), 0.0, 0.0, false);
+    var count = render_frame.light_count;
+    var place = RenderLight();
+    if SCENE_SHINES && render_frame.emitters > 0u {
+        place = emitter_draw(surface.position, surface.normal, numbers.xyz);
+        count += 1u;
+    }
+    let few = draws > 0u && draws < count;
+    let glossy = is_first && render_frame.sky_rays > 0u && surface.roughness < SCENE_SEEN_BODY;
     var total = 0.0;
     var run = 0.0;
     var next = 0.0;
@@ -132,9 +251,38 @@ fn scene_direct(surface: Surface, view: vec3f, draws: u32, chance: f32, standoff
     // First what all give together, then the rays.
     for (var k = 0u; k < 2u * count; k += 1u) {
         let index = k % count;
-        let arrival = scene_arrival(index, surface, standoff, under);
-        let lit = scene_lamp(surface, view, arrival, out);
-        let fraction = light_weight(lit);
+        var lamp = place;
+        if index < render_frame.light_count {
+            lamp = light_load(index);
+        }
+        // Areas have a distance of their own within which their light does not grow.
+        let is_area = lamp.kind == SCENE_LIGHT_AREA;
+        var arrival = scene_arrival(lamp, surface, select(standoff, 0.0, is_area), under);
+        // The ray ends before the surface that shines.
+        arrival.distance -= select(0.0, 4.0 * render_frame.nearest, is_area);
+        var soft = 0.0;
+        if is_first {
+            soft = select(scene_softness(arrival.distance, arrival.spread, footprint), 1.0, is_area);
+        }
+        // The part that is told apart, with the facet's normal in place of the relief's.
+        var glow = vec3f(0.0);
+        var relief = vec3f(0.0);
+        var bare = surface;
+        if soft > 0.0 {
+            relief = scene_glow(surface, view, arrival, out) * soft;
+            glow = relief;
+            if !is_area {
+                var level = surface;
+                level.normal = surface.facet;
+                glow = scene_glow(level, view, arrival, out) * soft;
+            }
+            bare.diffuse *= 1.0 - soft;
+        }
+        var lit = vec3f(0.0);
+        if !(is_first && is_area) {
+            lit = scene_lamp(bare, view, arrival, out, glossy && lamp.kind == SCENE_LIGHT_BODY);
+        }
+        let fraction = light_weight(lit) + light_weight(glow);
         if k < count {
             total += fraction;
             continue;
@@ -142,7 +290,7 @@ fn scene_direct(surface: Surface, view: vec3f, draws: u32, chance: f32, standoff
         if k == count {
             // Positions at equal steps along what all give together: the lamps that they fall on are drawn.
             step = total / f32(max(draws, 1u));
-            next = chance * step;
+            next = numbers.w * step;
         }
         run += fraction;
         var weight = 1.0;
@@ -156,12 +304,24 @@ fn scene_direct(surface: Surface, view: vec3f, draws: u32, chance: f32, standoff
         } else if fraction <= total * SCENE_MIN_LAMP {
             continue;
         }
-        let visible = scene_visibility(arrival.start, arrival.along, arrival.distance);
+        // Each lamp has places of its own; they come from other digits of the number that draws a lamp.
+        let digits = fract(numbers.w * vec2f(61.0, 3571.0));
+        let place_numbers = fract(digits + f32(index) * vec2f(0.7548777, 0.5698403));
+        // One ray to a lamp that gives little: its noise is little, too.
+        let is_large = !few && soft < 1.0 && arrival.spread > 0.0 && fraction > total * SCENE_LARGE_LAMP;
+        let shadow = scene_shadow(arrival, place_numbers, select(1u, SCENE_LAMP_RAYS, is_large));
         var fraction_of_pane = 1.0;
         if SCENE_PANE {
             fraction_of_pane = pane_shadow_fraction(arrival.start, arrival.along, arrival.distance, arrival.spread);
         }
-        sum += lit * visible * (fraction_of_pane * weight);
+        let passes = shadow.xyz * (fraction_of_pane * weight);
+        result.is_soft = result.is_soft || shadow.w > 0.0;
+        result.lit += lit * passes;
+        result.glow += glow * passes;
+        if !is_area {
+            result.flat_light += light_weight(glow);
+            result.relief_light += light_weight(relief);
+        }
     }
-    return sum;
+    return result;
 }

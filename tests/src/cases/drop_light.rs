@@ -132,8 +132,16 @@ fn many() -> SceneData {
         let direction = Vec3::new(b - 0.5, -1.0, d - 0.5).normalize();
         builder.add_light(match k % 4 {
             0 => LightSource::Directional { direction, irradiance: intensity * 0.01 },
-            1 => LightSource::Point { position, intensity, range: 8.0 * c },
-            _ => LightSource::Spot { position, direction, intensity, range: 0.0, inner: 0.4 * c, outer: 0.6 },
+            1 => LightSource::Point { radius: 0.0, position, intensity, range: 8.0 * c },
+            _ => LightSource::Spot {
+                radius: 0.0,
+                position,
+                direction,
+                intensity,
+                range: 0.0,
+                inner: 0.4 * c,
+                outer: 0.6,
+            },
         });
     }
     builder.build(&SkyLight::new(64, 32, &vec![[0.5; 3]; 64 * 32]))

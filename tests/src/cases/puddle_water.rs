@@ -178,7 +178,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         name,
         kernel: &TRACE_KERNEL,
         with: &[],
-        overrides: &[("SCENE_PANE", 0.0), ("SCENE_WET", 1.0), ("WET_SURFACES", 0.0)],
+        overrides: &[("SCENE_PANE", 0.0), ("SCENE_SHINES", 0.0), ("SCENE_WET", 1.0), ("WET_SURFACES", 0.0)],
         text: None,
         tol: WATER,
         run,

@@ -436,7 +436,12 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             name: "main_trace: a capture with a sun and lamps",
             kernel: &TRACE_KERNEL,
             with: &[],
-            overrides: &[("SCENE_PANE", 0.0), ("SCENE_WET", 0.0), ("WET_SURFACES", 0.0)],
+            overrides: &[
+                ("SCENE_PANE", 0.0),
+                ("SCENE_SHINES", 0.0),
+                ("SCENE_WET", 0.0),
+                ("WET_SURFACES", 0.0),
+            ],
             text: None,
             tol: CAPTURED,
             run: |gpu| {

@@ -8,8 +8,8 @@ use downpour_shaders::render::brdf::BRDF;
 use downpour_shaders::render::path::PATH_LATTICE;
 use downpour_shaders::render::scatter::SCATTER;
 use downpour_shaders::render::scene::{
-    SCENE_BLENDED, SCENE_DOUBLE_SIDED, SCENE_MASKED, SCENE_UNLIT, SKY, SKYLIGHT, SKYLIGHT_KERNEL, TEXTURE,
-    TRACE_KERNEL,
+    EMITTER, SCENE, SCENE_BLENDED, SCENE_DOUBLE_SIDED, SCENE_MASKED, SCENE_UNLIT, SKY, SKYLIGHT,
+    SKYLIGHT_KERNEL, TEXTURE, TRACE_KERNEL,
 };
 use downpour_trace::brdf::{
     brdf_direct, brdf_distribution, brdf_environment, brdf_fresnel, brdf_masking, brdf_visibility,
@@ -17,13 +17,14 @@ use downpour_trace::brdf::{
 };
 use downpour_trace::builder::{MeshPart, SceneBuilder};
 use downpour_trace::data::{RenderFrame, SceneData};
+use downpour_trace::emitter::{emitter_color, emitter_weight};
 use downpour_trace::gpu::ScenePipeline;
 use downpour_trace::material::{MaterialLook, TextureUse};
 use downpour_trace::path::path_lattice_numbers;
 use downpour_trace::scatter::{
     scatter_above, scatter_alpha, scatter_chance, scatter_gloss, scatter_hemisphere, scatter_tangent,
 };
-use downpour_trace::scene::SceneView;
+use downpour_trace::scene::{SceneView, scene_alpha, scene_disk, scene_softness};
 use downpour_trace::sky::sky_coordinates;
 use downpour_trace::sky_light::SkyLight;
 use downpour_trace::skylight::{skylight_film, skylight_hat, skylight_lobe};
@@ -131,6 +132,41 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             Tol::relative(1.0e-3, 1.0e-4, "the distribution above"),
             |a| brdf_visible_density(a.f32(), a.f32(), a.f32()).words(),
         ),
+        FunctionCase::new(
+            "emitter_weight",
+            &EMITTER,
+            &[
+                Uniform(-5.0, 5.0),
+                Uniform(-5.0, 5.0),
+                Uniform(-5.0, 5.0),
+                Uniform(0.0, 4.0),
+                Uniform(0.0, 9.0),
+                Unit3,
+            ],
+            Tol::relative(1.0e-4, 1.0e-4, "a height that cancels at the horizon").with_outliers(1.0e-3),
+            |a| emitter_weight(vec3(a), a.f32(), a.f32(), vec3(a)).words(),
+        ),
+        FunctionCase::new("emitter_color", &EMITTER, &[AnyWord], FORMULA, |a| {
+            emitter_color(a.u32()).to_array().words()
+        }),
+        FunctionCase::new("scene_alpha", &SCENE, &[fraction, fraction, Uniform(-0.2, 1.0)], FORMULA, |a| {
+            scene_alpha(a.f32(), a.f32(), a.f32()).words()
+        }),
+        FunctionCase::new(
+            "scene_softness",
+            &SCENE,
+            &[Uniform(0.0, 30.0), Uniform(0.0, 0.1), Uniform(0.001, 0.1)],
+            Tol::absolute(1.0e-5, "products and a quotient (2.5 ulp) of numbers up to 10"),
+            |a| scene_softness(a.f32(), a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "scene_disk",
+            &SCENE,
+            &[fraction, fraction, Below(4)],
+            Tol::absolute(2.0e-3, "sine and cosine (2^-11 within pi, and unspecified reduction beyond)")
+                .with_outliers(1.0e-3),
+            |a| scene_disk(a.f32s(), a.u32()).to_array().words(),
+        ),
         FunctionCase::new("scatter_tangent", &SCATTER, &[Unit3], FORMULA.with_outliers(1.0e-3), |a| {
             scatter_tangent(vec3(a)).to_array().words()
         }),
@@ -203,6 +239,11 @@ pub(super) fn functions() -> Vec<FunctionCase> {
 
 /// A floor, boxes of every kind of material, a masked and a see-through sheet, three kinds of lamps, a sky.
 pub(super) fn scene() -> SceneData {
+    scene_that(false)
+}
+
+/// The same; if it `shines`, with a board whose colors shine, the glass of a lamp, and lamps with a size.
+fn scene_that(shines: bool) -> SceneData {
     let sky: Vec<[f32; 3]> = (0..64 * 32)
         .map(|i| {
             let (x, y) = ((i % 64) as f32 / 64.0, (i / 64) as f32 / 32.0);
@@ -235,9 +276,23 @@ pub(super) fn scene() -> SceneData {
         },
         MaterialLook { flags: SCENE_BLENDED, base_color: [0.2, 0.9, 0.4, 0.4], ..plain },
         MaterialLook { flags: SCENE_UNLIT, base_color: [1.0, 0.2, 0.7, 1.0], ..plain },
-        MaterialLook { transmission: 0.8, roughness: 0.1, emission: [0.1, 0.0, 0.2], ..plain },
+        MaterialLook {
+            transmission: 0.8,
+            roughness: 0.1,
+            emission: if shines { [0.1, 0.0, 0.2] } else { [0.0; 3] },
+            ..plain
+        },
     ];
     let materials = looks.map(|look| builder.add_material(look));
+    let shining = [
+        MaterialLook {
+            maps: [None, None, None, Some(color), None, None],
+            emission: [4.0, 3.0, 2.0],
+            ..plain
+        },
+        MaterialLook { emission: [20.0; 3], ..plain },
+    ];
+    let shining = shining.map(|look| builder.add_material(look));
     let positions: Vec<[f32; 3]> = (0..24)
         .map(|i| {
             // Face i / 4 of a cube: two coordinates run, the third is at its end.
@@ -281,16 +336,24 @@ pub(super) fn scene() -> SceneData {
             Vec3::new(0.7, 0.9, 0.7),
         );
     }
+    let radius = if shines { 0.15 } else { 0.0 };
+    if shines {
+        add(shining[0], Vec3::new(-0.4, 0.9, -1.6), Vec3::new(2.0, 0.7, 0.05));
+        // The glass of the spot.
+        add(shining[1], Vec3::new(2.0, 2.55, 1.0), Vec3::splat(0.1));
+    }
     builder.add_light(LightSource::Directional {
         direction: Vec3::new(0.4, -0.8, -0.45).normalize(),
         irradiance: Vec3::new(3.0, 2.8, 2.5),
     });
     builder.add_light(LightSource::Point {
+        radius,
         position: Vec3::new(-1.0, 1.5, 1.5),
         intensity: Vec3::splat(2.0),
         range: 6.0,
     });
     builder.add_light(LightSource::Spot {
+        radius: 0.0,
         position: Vec3::new(2.0, 2.5, 1.0),
         direction: Vec3::new(-0.4, -0.85, -0.35).normalize(),
         intensity: Vec3::new(6.0, 3.0, 1.0),
@@ -298,7 +361,11 @@ pub(super) fn scene() -> SceneData {
         inner: 0.3,
         outer: 0.6,
     });
-    builder.build(&sky)
+    let mut data = builder.build(&sky);
+    if shines {
+        data.set_light_radius(0, 0.03);
+    }
+    data
 }
 
 fn scene_case(gpu: &Gpu, eye: Vec3, sky_rays: u32) -> Result<Run, GpuError> {
@@ -323,6 +390,14 @@ pub(super) fn picture(gpu: &Gpu, scene: &SceneData, eye: Vec3, sky_rays: u32) ->
     })
 }
 
+/// A dry scene of which nothing shines.
+const DULL: &[(&str, f64)] =
+    &[("SCENE_PANE", 0.0), ("SCENE_SHINES", 0.0), ("SCENE_WET", 0.0), ("WET_SURFACES", 0.0)];
+
+/// A dry scene of which something does.
+const SHINING: &[(&str, f64)] =
+    &[("SCENE_PANE", 0.0), ("SCENE_SHINES", 1.0), ("SCENE_WET", 0.0), ("WET_SURFACES", 0.0)];
+
 const PICTURE: Tol = Tol::relative(
     2.0e-3,
     2.0e-3,
@@ -332,11 +407,11 @@ const PICTURE: Tol = Tol::relative(
 
 /// The cases.
 pub(super) fn kernels() -> Vec<KernelCase> {
-    let case = |name, run| KernelCase {
+    let case = |name, overrides, run| KernelCase {
         name,
         kernel: &TRACE_KERNEL,
         with: &[],
-        overrides: &[("SCENE_PANE", 0.0), ("SCENE_WET", 0.0), ("WET_SURFACES", 0.0)],
+        overrides,
         text: None,
         tol: PICTURE,
         run,
@@ -352,7 +427,18 @@ pub(super) fn kernels() -> Vec<KernelCase> {
     };
     vec![
         filter("main_skylight: from above", |gpu| scene_case(gpu, Vec3::new(1.6, 3.4, 2.0), 2)),
-        case("main_trace: near, with rays to the sky", |gpu| scene_case(gpu, Vec3::new(0.6, 1.4, 3.0), 4)),
-        case("main_trace: far, with the open sky", |gpu| scene_case(gpu, Vec3::new(-9.0, 6.0, 12.0), 0)),
+        case("main_trace: near, with rays to the sky", DULL, |gpu| {
+            scene_case(gpu, Vec3::new(0.6, 1.4, 3.0), 4)
+        }),
+        case("main_trace: far, with the open sky", DULL, |gpu| {
+            scene_case(gpu, Vec3::new(-9.0, 6.0, 12.0), 0)
+        }),
+        case("main_trace: surfaces that shine, and lamps with a size", SHINING, |gpu| {
+            picture(gpu, &scene_that(true), Vec3::new(0.6, 1.4, 3.0), 2)
+        }),
+        case("main_trace: the sun over surfaces that shine", SHINING, |gpu| {
+            // The sun stands behind the middle.
+            picture(gpu, &scene_that(true), Vec3::new(1.6, -3.2, -1.8), 1)
+        }),
     ]
 }

@@ -57,7 +57,8 @@ pub(crate) struct RenderArguments {
     #[arg(requires = "frames")]
     fps: Option<f64>,
     /// Write all layers into one .exr: R, G, B; clean.R, .G, .B; rain.R, .G, .B; transmittance.Y; depth.Z (meters along
-    /// the ray, 1e30 for the sky).
+    /// the ray, 1e30 for the sky); drop.id_low, .id_high, .diameter_mm, .distance_m, .alpha of the drop that a pixel shows most
+    /// of; wetness.Y, water.depth_mm and motion.X, .Y (pixels per second) of the surface behind it.
     #[arg(long)]
     layers: bool,
     /// Write statistics: counts of drops, rates, times. Of a clip: the means, and each frame's.
@@ -157,6 +158,7 @@ impl RenderArguments {
             refraction: self.refraction.map(RefractionForm::from),
             atlas: self.streaks.read(&weather)?.atlas()?,
             measure,
+            truth: self.layers,
             first_s,
         };
         let device = self.backend.device(|text| self.say(text))?;

@@ -85,6 +85,64 @@ fn a_picture_is_written_and_told_of() {
     assert_eq!(names, ["B", "G", "R"]);
 }
 
+/// Whole numbers of a channel.
+fn whole(bytes: &[u8], name: &str) -> Vec<u32> {
+    use exr::prelude::*;
+    let image = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
+    let image = image.all_attributes().from_buffered(Cursor::new(bytes)).unwrap();
+    let channel =
+        image.layer_data.channel_data.list.into_iter().find(|channel| channel.name.to_string() == name);
+    match channel.map(|channel| channel.sample_data) {
+        Some(FlatSamples::U32(numbers)) => numbers,
+        other => panic!("{name}: {other:?}"),
+    }
+}
+
+/// The drop that a pixel shows most of is one of the list, as large as there and as far from the eye, and takes as much light as it
+/// covers. The floor is wet and under water where it should be.
+#[test]
+fn the_truth_about_a_pixel_is_that_of_its_drop() {
+    let keys = "[wetness]\nwetness = 0.75\n[[puddle]]\nposition_m = [0, 0, 0]\nsize_m = [1, 1]\nmask = 'deep.png'\ndepth_mm = 20\n";
+    let mut mask = Cursor::new(Vec::new());
+    image::GrayImage::from_pixel(4, 4, image::Luma([255]))
+        .write_to(&mut mask, image::ImageFormat::Png)
+        .unwrap();
+    let run = storm(&["render", "--layers", "-o", "rain.exr", "--dump-drops", "drops.csv"]);
+    let run = run.with_file("storm.toml", weather(keys)).with_file("deep.png", mask.into_inner());
+    let ended = run.run().succeeded();
+    let (drops, bytes) = (rows(&ended), ended.file("rain.exr"));
+    let layers = channels(&bytes);
+    let (low, high) = (whole(&bytes, "drop.id_low"), whole(&bytes, "drop.id_high"));
+    let (alpha, through) = (&layers["drop.alpha"], &layers["transmittance.Y"]);
+    let shown: Vec<usize> = (0..alpha.len()).filter(|&k| alpha[k] > 0.0).collect();
+    assert!(shown.len() > 100, "{}", shown.len());
+    for &k in &shown {
+        let drop = &drops[&(u64::from(high[k]) << 32 | u64::from(low[k]))];
+        assert!((f64::from(layers["drop.diameter_mm"][k]) - drop.diameter_mm).abs() < 1.0e-4);
+        let [x, y, z] = drop.position;
+        let away = (x * x + (y - 1.2) * (y - 1.2) + (z - 6.0) * (z - 6.0)).sqrt();
+        let distance = f64::from(layers["drop.distance_m"][k]);
+        // It falls 0.15 m while the shutter is open.
+        assert!((distance - away).abs() < 0.02 * away + 0.08, "{distance} of {away} m");
+        assert!(alpha[k] < 1.05 - through[k], "{k}: {} of {}", alpha[k], through[k]);
+    }
+    let [wetness, water, depth] = ["wetness.Y", "water.depth_mm", "depth.Z"].map(|name| &layers[name]);
+    // Of neighbors before the same ground, the one whose drop takes more light lets less through.
+    let is_alike = |k: &usize| (depth[*k] / depth[k + 1] - 1.0).abs() < 0.02;
+    let is_apart = |k: &usize| (alpha[*k] - alpha[k + 1]).abs() > 0.006;
+    let pairs: Vec<usize> = (0..alpha.len() - 1).filter(is_alike).filter(is_apart).collect();
+    let agrees = |&&k: &&usize| (alpha[k] > alpha[k + 1]) == (through[k] < through[k + 1]);
+    let agreeing = pairs.iter().filter(agrees).count();
+    assert!(pairs.len() > 100 && agreeing * 10 > pairs.len() * 9, "{agreeing} of {}", pairs.len());
+    for k in 0..wetness.len() {
+        assert!((0.0..=1.0).contains(&wetness[k]) && (depth[k] < 1.0e30 || wetness[k] + water[k] == 0.0));
+    }
+    // Smooth floor stores a quarter of what porous ground does: it is wetter than that.
+    assert!(wetness.iter().any(|&w| w > 0.9));
+    assert!(water.iter().any(|&w| (w - 20.0).abs() < 0.1));
+    assert!(layers["motion.X"].iter().chain(&layers["motion.Y"]).all(|&pace| pace == 0.0));
+}
+
 /// The picture is the sum of its layers; the rain absorbs and emits light; the floor is at its depth.
 #[test]
 fn layers_add_up_to_the_picture() {
@@ -100,10 +158,19 @@ fn layers_add_up_to_the_picture() {
         "clean.G",
         "clean.R",
         "depth.Z",
+        "drop.alpha",
+        "drop.diameter_mm",
+        "drop.distance_m",
+        "drop.id_high",
+        "drop.id_low",
+        "motion.X",
+        "motion.Y",
         "rain.B",
         "rain.G",
         "rain.R",
         "transmittance.Y",
+        "water.depth_mm",
+        "wetness.Y",
     ];
     assert_eq!(names, expected);
     let through = &layers["transmittance.Y"];

@@ -304,7 +304,7 @@ impl<'a> DropLights<'a> {
     /// Full light within the inner cone; between the two cones it fades. Zero for other lamps.
     fn drop_light_cone(light: &Light, position: Vec3, least: f32) -> Vec3 {
         let (axis, [scale, edge]) = (light.axis, light.cone);
-        if light.is_parallel || scale <= 0.0 {
+        if light.is_parallel() || scale <= 0.0 {
             return Vec3::ZERO;
         }
         let offset = position - light.position;

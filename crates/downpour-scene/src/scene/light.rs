@@ -17,6 +17,9 @@ pub struct Light {
     pub intensity: f32,
     /// Distance at which the light has faded to zero, in meters; `None` for an unlimited range.
     pub range: Option<f32>,
+    /// Radius of the lamp's sphere, in meters: `radius_m` of the light's `extras`. `None`: that of its glass in the model, or a
+    /// point.
+    pub radius: Option<f32>,
     /// Kind of the light.
     pub kind: LightKind,
 }
@@ -59,7 +62,7 @@ impl Light {
     /// ```
     /// use downpour_scene::scene::{Light, LightKind};
     /// let range = Some(10.0);
-    /// let lamp = Light { name: String::new(), color: [1.0; 3].into(), intensity: 100.0, range, kind: LightKind::Point };
+    /// let lamp = Light { name: String::new(), color: [1.0; 3].into(), intensity: 100.0, range, radius: None, kind: LightKind::Point };
     /// assert_eq!((lamp.window(0.0), lamp.window(10.0), lamp.window(99.0)), (1.0, 0.0, 0.0));
     /// ```
     #[must_use]

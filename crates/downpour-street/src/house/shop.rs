@@ -5,7 +5,6 @@ use glam::{Vec2, Vec3};
 use super::{Built, DEPTH_M, House, Opening, Shop, door};
 use crate::material::Material;
 use crate::mesh::{BEHIND, BELOW, LEFT, Mesh, Paint, plain, tinted};
-use crate::model::Lamp;
 use crate::noise::{hash, mix};
 use crate::textures::SIGNS;
 
@@ -86,7 +85,7 @@ impl Shop {
         }
         projecting(self, mesh, b + 0.25, low);
         let is_open = hash(house.seed as i32, 3, 350) < 0.8;
-        room(mesh, house.seed, [left, right], low, is_open, &mut built.lamps);
+        room(mesh, house.seed, [left, right], low, is_open);
     }
 
     /// Stall riser, panes with bars, and a glazed door in the middle third.
@@ -185,7 +184,7 @@ fn awning(mesh: &mut Mesh, [a, b]: [f32; 2], low: f32, stripes: [[f32; 3]; 2]) {
 }
 
 /// The room: floor, walls, shelves with goods, a table in the window, light.
-fn room(mesh: &mut Mesh, seed: u32, [left, right]: [f32; 2], low: f32, is_open: bool, lamps: &mut Vec<Lamp>) {
+fn room(mesh: &mut Mesh, seed: u32, [left, right]: [f32; 2], low: f32, is_open: bool) {
     let (front, back, top) = (-0.2, -ROOM_M, low + GLASS_M + 0.1);
     let p = |x: f32, y: f32, z: f32| Vec3::new(x, y, z);
     let wall = tinted(Material::Goods, [0.36, 0.30, 0.23]);
@@ -258,18 +257,5 @@ fn room(mesh: &mut Mesh, seed: u32, [left, right]: [f32; 2], low: f32, is_open: 
             ],
         );
     }
-    if !is_open {
-        return;
-    }
-    // One lamp represents both panels.
-    lamps.push(Lamp {
-        name: "shop",
-        position: [mix(left, right, 0.5), top - 0.13, -1.3],
-        direction: None,
-        cone_deg: [0.0; 2],
-        color: [1.0, 0.84, 0.63],
-        intensity_cd: mix(45.0, 110.0, random(9001)),
-        range_m: 8.0,
-    });
     const { assert!(ROOM_M < DEPTH_M) };
 }

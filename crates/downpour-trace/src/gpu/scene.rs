@@ -164,19 +164,26 @@ struct SceneParts {
     has_puddles: bool,
     has_pane: bool,
     is_wet: bool,
+    shines: bool,
 }
 
 impl SceneParts {
     /// Number of combinations.
-    const COUNT: usize = 8;
+    const COUNT: usize = 16;
 
     fn of(frame: &RenderFrame) -> Self {
-        Self { has_puddles: frame.puddle_count > 0, has_pane: frame.pane > 0, is_wet: frame.wetness > 0 }
+        Self {
+            has_puddles: frame.puddle_count > 0,
+            has_pane: frame.pane > 0,
+            is_wet: frame.wetness > 0,
+            shines: frame.emitters > 0,
+        }
     }
 
     /// Index of the combination, below [`SceneParts::COUNT`].
     fn index(self) -> usize {
-        usize::from(self.has_puddles) | usize::from(self.has_pane) << 1 | usize::from(self.is_wet) << 2
+        let flags = [self.has_puddles, self.has_pane, self.is_wet, self.shines];
+        flags.iter().rev().fold(0, |index, &flag| index << 1 | usize::from(flag))
     }
 }
 
@@ -187,6 +194,7 @@ fn tracer(gpu: &Gpu, parts: SceneParts) -> Result<ComputeKernel, GpuError> {
         ("SCENE_WET", number(parts.has_puddles)),
         ("SCENE_PANE", number(parts.has_pane)),
         ("WET_SURFACES", number(parts.is_wet)),
+        ("SCENE_SHINES", number(parts.shines)),
     ];
     ComputeKernel::new(gpu, &TRACE_KERNEL, &overrides)
 }

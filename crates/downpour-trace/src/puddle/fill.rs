@@ -1,73 +1,178 @@
-//! Hollows of the ground, filled up to where they spill.
+//! Hollows of the ground, filled by a part of their depth or by the rain that runs into them.
 //!
-//! Law: water stands as high as the lowest way out lets it. The heights of all ways out are found from the border inwards,
+//! Law: water stands no higher than the lowest way out lets it. The heights of all ways out are found from the border inwards,
 //! lowest first (R. Barnes et al., Priority-Flood, Computers & Geosciences 62, 2014). Cells of the border and cells without
-//! ground let water out.
+//! ground let water out. The cell from which a cell was found is the way its water takes; so each hollow has a catchment, and the
+//! rain on it less what the ground keeps is the water in the hollow, up to where it spills. What spills is gone.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Ground as a grid of cells, row by row, and the degree of filling.
+/// Ground as a grid of cells, row by row.
 #[derive(Clone, Copy, Debug)]
 pub struct Hollows<'a> {
     /// Columns and rows.
     pub size: [usize; 2],
     /// Height of each cell, m; a number that is not finite has no ground.
     pub ground: &'a [f32],
-    /// Fraction of the depth to which hollows are filled: 0 nothing, 1 until they spill.
-    pub fraction: f32,
+    /// Fraction of the rain that each cell gets.
+    pub open: &'a [f32],
+}
+
+/// Water in the hollows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Filling {
+    /// Fraction of the depth: 0 nothing, 1 until they spill.
+    Fraction(f32),
+    /// Water of a rain, a time without it, and a rain after that.
+    Rain {
+        /// Depth of water that has run off level ground before, m.
+        before_m: f32,
+        /// Depth of water that has evaporated and seeped away since, m.
+        lost_m: f32,
+        /// Depth of water that has run off after that, m.
+        since_m: f32,
+    },
+}
+
+/// Limits of the water.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FillLimits {
     /// Maximum depth of water, m: deeper hollows are filled less.
     pub deepest: f32,
-    /// Minimum depth of a hollow that holds water, m.
+    /// Minimum depth of water that stands, m.
     pub least: f32,
+}
+
+/// Cells that one water may cover.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Basin {
+    /// Cells, the lowest first.
+    cells: Vec<u32>,
+    /// Heights of the cells, m.
+    heights: Vec<f32>,
+    /// Height at which it spills, m.
+    spill: f32,
+    /// Number of cells whose rain runs into it, each by the fraction of the rain that it gets.
+    catchment: f32,
+}
+
+impl Basin {
+    /// Level, m, of the water that fills it.
+    #[must_use]
+    pub fn level(&self, filling: &Filling, limits: &FillLimits) -> f32 {
+        let bottom = self.heights.first().copied().unwrap_or(self.spill);
+        let most = self.spill.min(bottom + limits.deepest);
+        match *filling {
+            Filling::Fraction(fraction) => bottom + ((self.spill - bottom) * fraction).min(limits.deepest),
+            Filling::Rain { before_m, lost_m, since_m } => {
+                let first = self.level_of(f64::from(before_m * self.catchment)).min(most);
+                let left = (first - lost_m).max(bottom);
+                self.level_of(self.volume(left) + f64::from(since_m * self.catchment)).min(most)
+            }
+        }
+    }
+
+    /// Volume of the water at a level, m, in cells times m.
+    fn volume(&self, level: f32) -> f64 {
+        self.heights
+            .iter()
+            .take_while(|&&height| height < level)
+            .map(|&h| f64::from(level) - f64::from(h))
+            .sum()
+    }
+
+    /// Level, m, of a volume, in cells times m.
+    fn level_of(&self, volume: f64) -> f32 {
+        // With k cells under water, its surface is the mean of their heights plus the volume over them.
+        let (mut sum, mut level) = (0.0, f64::from(self.spill));
+        for (count, &height) in (1u32..).zip(&self.heights) {
+            sum += f64::from(height);
+            level = (volume + sum) / f64::from(count);
+            if self.heights.get(count as usize).is_none_or(|&next| f64::from(next) >= level) {
+                break;
+            }
+        }
+        level as f32
+    }
+}
+
+/// The hollows of some ground.
+#[must_use]
+pub fn basins(hollows: &Hollows<'_>) -> Vec<Basin> {
+    let Drainage { spill, order, next } = drainage(hollows);
+    let [columns, rows] = hollows.size;
+    let mut basins: Vec<Basin> = Vec::new();
+    let mut of_cell = vec![u32::MAX; columns * rows];
+    let mut ahead = Vec::new();
+    for start in 0..columns * rows {
+        let floods = |cell: usize| spill[cell] > hollows.ground[cell];
+        if of_cell[start] != u32::MAX || !floods(start) {
+            continue;
+        }
+        // Cells that touch have one level: each is a way out for the other.
+        let mut cells = Vec::new();
+        ahead.push(start);
+        of_cell[start] = basins.len() as u32;
+        while let Some(cell) = ahead.pop() {
+            cells.push(cell as u32);
+            for beside in neighbors(hollows.size, cell) {
+                if of_cell[beside] == u32::MAX && floods(beside) {
+                    of_cell[beside] = basins.len() as u32;
+                    ahead.push(beside);
+                }
+            }
+        }
+        let height = |cell: u32| hollows.ground[cell as usize];
+        cells.sort_unstable_by(|&a, &b| height(a).total_cmp(&height(b)).then(a.cmp(&b)));
+        let heights = cells.iter().map(|&cell| height(cell)).collect();
+        basins.push(Basin { cells, heights, spill: spill[start], catchment: 0.0 });
+    }
+    // A cell's water goes where that of the cell goes that it runs to: those are found before it.
+    for cell in order {
+        if of_cell[cell] == u32::MAX {
+            of_cell[cell] = next[cell].map_or(u32::MAX, |next| of_cell[next]);
+        }
+        if let Some(basin) = basins.get_mut(of_cell[cell] as usize) {
+            basin.catchment += hollows.open[cell];
+        }
+    }
+    basins
 }
 
 /// The level of the water over each cell, m; `None` on land.
 #[must_use]
-pub fn fill(hollows: &Hollows<'_>) -> Vec<Option<f32>> {
-    let spill = spill_levels(hollows);
-    let [columns, rows] = hollows.size;
-    let mut levels = vec![None; columns * rows];
-    let mut known = vec![false; columns * rows];
-    let (mut basin, mut ahead) = (Vec::new(), Vec::new());
-    for start in 0..columns * rows {
-        let floods = |cell: usize| spill[cell] > hollows.ground[cell];
-        if known[start] || !floods(start) {
+pub fn fill(count: usize, basins: &[Basin], filling: &Filling, limits: &FillLimits) -> Vec<Option<f32>> {
+    let mut levels = vec![None; count];
+    for basin in basins {
+        let level = basin.level(filling, limits);
+        let bottom = basin.heights.first().copied().unwrap_or(level);
+        if level - bottom < limits.least {
             continue;
         }
-        // Cells that touch have one level: each is a way out for the other.
-        basin.clear();
-        ahead.push(start);
-        known[start] = true;
-        while let Some(cell) = ahead.pop() {
-            basin.push(cell);
-            for next in neighbors(hollows.size, cell) {
-                if !known[next] && floods(next) {
-                    known[next] = true;
-                    ahead.push(next);
-                }
-            }
-        }
-        let bottom = basin.iter().map(|&cell| hollows.ground[cell]).fold(f32::INFINITY, f32::min);
-        let deep = ((spill[start] - bottom) * hollows.fraction).min(hollows.deepest);
-        if deep < hollows.least {
-            continue;
-        }
-        let level = bottom + deep;
-        for &cell in &basin {
-            if hollows.ground[cell] < level {
-                levels[cell] = Some(level);
-            }
+        for (&cell, _) in basin.cells.iter().zip(&basin.heights).take_while(|&(_, &height)| height < level) {
+            levels[cell as usize] = Some(level);
         }
     }
     levels
 }
 
-/// The height that water reaches over each cell before it runs out: the ground itself where it runs off at once.
-fn spill_levels(hollows: &Hollows<'_>) -> Vec<f32> {
+/// Ways of the water over some ground.
+struct Drainage {
+    /// Height that water reaches over each cell before it runs out: the ground itself where it runs off at once.
+    spill: Vec<f32>,
+    /// Cells in the order in which they were found, from the border inwards.
+    order: Vec<usize>,
+    /// Cell to which the water of each runs.
+    next: Vec<Option<usize>>,
+}
+
+fn drainage(hollows: &Hollows<'_>) -> Drainage {
     let [columns, rows] = hollows.size;
     let ground = |cell: usize| hollows.ground.get(cell).copied().filter(|h| h.is_finite());
     let mut levels = vec![f32::INFINITY; columns * rows];
+    let mut next_of = vec![None; columns * rows];
+    let mut order = Vec::with_capacity(columns * rows);
     let mut open = BinaryHeap::new();
     let mut let_out = |cell: usize, level: f32, levels: &mut Vec<f32>| {
         levels[cell] = level;
@@ -84,15 +189,17 @@ fn spill_levels(hollows: &Hollows<'_>) -> Vec<f32> {
         }
     }
     while let Some(Reverse((_, cell))) = open.pop() {
+        order.push(cell);
         for next in neighbors(hollows.size, cell) {
             if levels[next] == f32::INFINITY {
                 let own = ground(next).unwrap_or(f32::NEG_INFINITY);
                 levels[next] = own.max(levels[cell]);
+                next_of[next] = Some(cell);
                 open.push(Reverse((ordered(levels[next]), next)));
             }
         }
     }
-    levels
+    Drainage { spill: levels, order, next: next_of }
 }
 
 /// A whole number that is in the same order as the numbers.
@@ -121,7 +228,10 @@ mod tests {
     fn filled(size: [usize; 2], fraction: f32, ground: impl Fn(f32, f32) -> f32) -> Vec<Option<f32>> {
         let ground: Vec<f32> =
             (0..size[0] * size[1]).map(|i| ground((i % size[0]) as f32, (i / size[0]) as f32)).collect();
-        fill(&Hollows { size, ground: &ground, fraction, deepest: 10.0, least: 1.0e-3 })
+        let open = vec![1.0; ground.len()];
+        let basins = basins(&Hollows { size, ground: &ground, open: &open });
+        let limits = FillLimits { deepest: 10.0, least: 1.0e-3 };
+        fill(ground.len(), &basins, &Filling::Fraction(fraction), &limits)
     }
 
     /// Two bowls whose rims are at 1 and at 2, the second with a notch at 1.5.
@@ -161,10 +271,68 @@ mod tests {
         let ground: Vec<f32> =
             (0..400u16).map(|i| if (5..8).contains(&(i % 20)) && i / 20 == 9 { -2.0 } else { 0.0 }).collect();
         let levels = |deepest, least| {
-            fill(&Hollows { size: [20, 20], ground: &ground, fraction: 1.0, deepest, least })[9 * 20 + 6]
+            let basins = basins(&Hollows { size: [20, 20], ground: &ground, open: &[1.0; 400] });
+            let limits = FillLimits { deepest, least };
+            fill(400, &basins, &Filling::Fraction(1.0), &limits)[9 * 20 + 6]
         };
         assert_eq!(levels(10.0, 0.1), Some(0.0));
         assert_eq!(levels(0.5, 0.1), Some(-1.5));
         assert_eq!(levels(10.0, 2.5), None);
+    }
+
+    /// A box of 5 x 4 cells, 0.1 m deep, in the middle of a funnel that is 13 x 12 cells wide up to its ridge, in ground that slopes
+    /// away.
+    fn funnel() -> Vec<f32> {
+        (0..40u16 * 30)
+            .map(|i| {
+                let (x, y) = (f32::from(i % 40), f32::from(i / 40));
+                let (dx, dy) = ((x - 19.0).abs() - 2.0, (y - 14.5).abs() - 1.5);
+                let outside = dx.max(dy);
+                let rim = 5.0;
+                if outside <= 0.0 {
+                    -0.1
+                } else if outside <= rim {
+                    0.001 * outside
+                } else {
+                    0.001 * rim - 0.002 * (outside - rim)
+                }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn rain_fills_a_hollow_from_its_catchment() {
+        let ground = funnel();
+        let basins = basins(&Hollows { size: [40, 30], ground: &ground, open: &[1.0; 1200] });
+        assert_eq!(basins.len(), 1);
+        let catchment = 13.0 * 12.0;
+        assert!((basins[0].catchment - catchment).abs() < 1.0, "{}", basins[0].catchment);
+        let limits = FillLimits { deepest: 10.0, least: 1.0e-4 };
+        let level = |before_m, lost_m, since_m| {
+            basins[0].level(&Filling::Rain { before_m, lost_m, since_m }, &limits)
+        };
+        // 4 mm on 156 cells in 20 cells.
+        let deep = 0.004 * catchment / 20.0;
+        assert!((level(0.004, 0.0, 0.0) - (deep - 0.1)).abs() < 1.0e-5);
+        assert!((level(0.004, 0.01, 0.0) - (deep - 0.11)).abs() < 1.0e-5);
+        assert!((level(0.004, 0.01, 0.001) - (deep - 0.11 + 0.001 * catchment / 20.0)).abs() < 1.0e-5);
+        // No water below the ground, none above the rim; water is not lost or made.
+        assert_eq!(level(0.004, 1.0, 0.0), -0.1);
+        assert!((level(9.0, 0.0, 0.0) - 0.005).abs() < 1.0e-6);
+        let mut last = -1.0;
+        for k in 0..40u8 {
+            let volume = 0.004 * catchment * f32::from(k) / 20.0;
+            let found = basins[0].level_of(f64::from(volume));
+            assert!(found >= last && (basins[0].volume(found) - f64::from(volume)).abs() < 1.0e-5);
+            last = found;
+        }
+    }
+
+    #[test]
+    fn under_a_roof_no_rain_is_caught() {
+        let ground = funnel();
+        let open: Vec<f32> = (0..1200u16).map(|i| if i % 40 < 20 { 1.0 } else { 0.0 }).collect();
+        let basins = basins(&Hollows { size: [40, 30], ground: &ground, open: &open });
+        assert!((basins[0].catchment - 7.0 * 12.0).abs() < 1.0, "{}", basins[0].catchment);
     }
 }

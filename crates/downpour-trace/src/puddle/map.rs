@@ -6,7 +6,7 @@ use downpour_shaders::render::puddle_water::PUDDLE_WATER_MIN_DEPTH;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
-use super::fill::{Hollows, fill};
+use super::fill::{Basin, FillLimits, Filling, Hollows, basins, fill};
 use super::relief::Relief;
 use crate::data::SceneData;
 
@@ -74,17 +74,24 @@ impl Ground {
     }
 }
 
-impl PuddleMap {
-    /// Water in the hollows of a scene. `relief` is what the ground has beside its model; `fraction`, `deepest` (m) and `least`
-    /// (m) are those of [`Hollows`].
+/// The ground within a rectangle, its hollows, and where rain gets to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PuddleGround {
+    ground: Ground,
+    size: [usize; 2],
+    /// Heights of the model over the middle, m; not a number where there is none.
+    model: Vec<f32>,
+    /// Fraction of the rain that arrives at each cell.
+    open: Vec<f32>,
+    /// Heights with the relief, m.
+    uneven: Vec<f32>,
+    basins: Vec<Basin>,
+}
+
+impl PuddleGround {
+    /// The ground of a scene. `relief` is what it has beside its model.
     #[must_use]
-    pub fn found(
-        scene: &SceneData,
-        ground: &Ground,
-        size: [usize; 2],
-        relief: &Relief,
-        [fraction, deepest, least]: [f32; 3],
-    ) -> Self {
+    pub fn new(scene: &SceneData, ground: &Ground, size: [usize; 2], relief: &Relief) -> Self {
         let (model, open) = ground.measure(scene, size);
         let [columns, rows] = size;
         let uneven: Vec<f32> = (0..columns * rows)
@@ -95,11 +102,20 @@ impl PuddleMap {
                 model[i] + relief.height(Vec2::new(position.x, position.z))
             })
             .collect();
-        let mut levels = fill(&Hollows { size, ground: &uneven, fraction, deepest, least });
+        let basins = basins(&Hollows { size, ground: &uneven, open: &open });
+        Self { ground: *ground, size, model, open, uneven, basins }
+    }
+
+    /// Water in its hollows.
+    #[must_use]
+    pub fn filled(&self, filling: &Filling, limits: &FillLimits) -> PuddleMap {
+        let Self { ground, size, model, open, uneven, basins } = self;
+        let [columns, rows] = *size;
+        let mut levels = fill(columns * rows, basins, filling, limits);
         // Who is beside water knows its level too, so that the shore runs between the cells.
         let wet: Vec<bool> = levels.iter().map(Option::is_some).collect();
         for _ in 0..SHORE_CELLS {
-            levels = spread(&levels, size);
+            levels = spread(&levels, *size);
         }
         let cell = |i: usize| {
             let height = if model[i].is_finite() { model[i] } else { -2.0 * ground.reach };
@@ -111,7 +127,23 @@ impl PuddleMap {
             let depth = if wet[i] { depth } else { depth.clamp(-SHORE_M, -0.1 * PUDDLE_WATER_MIN_DEPTH) };
             [height, (level - model[i]).max(0.0), depth, open[i]]
         };
-        Self { ground: *ground, size, cells: (0..columns * rows).map(cell).collect() }
+        PuddleMap { ground: *ground, size: *size, cells: (0..columns * rows).map(cell).collect() }
+    }
+}
+
+impl PuddleMap {
+    /// Water in the hollows of a scene, filled to a fraction of their depth: [`PuddleGround::filled`]. `deepest` and `least`, m, are
+    /// those of [`FillLimits`].
+    #[must_use]
+    pub fn found(
+        scene: &SceneData,
+        ground: &Ground,
+        size: [usize; 2],
+        relief: &Relief,
+        [fraction, deepest, least]: [f32; 3],
+    ) -> Self {
+        let ground = PuddleGround::new(scene, ground, size, relief);
+        ground.filled(&Filling::Fraction(fraction), &FillLimits { deepest, least })
     }
 
     /// Water as deep as is painted (m, row by row), on the surface of the model. A number that is not above 0 is land.

@@ -1,16 +1,24 @@
 //! The light of lamps and sun on a surface, with rays that find what hides it.
 
+use std::f32::consts::TAU;
+
 use downpour_drop::optics::optics_fresnel;
+use downpour_math::ops;
 use downpour_render::light::{Light, light_weight};
 use downpour_render::plate::Lighting;
 use downpour_shaders::bvh::BVH_FAR;
-use downpour_shaders::render::brdf::BRDF_GRAZING;
+use downpour_shaders::render::brdf::{BRDF_GRAZING, BRDF_MIN_DIVISOR};
 use downpour_shaders::render::puddle_water::{PUDDLE_WATER_INDEX, PUDDLE_WATER_OUTSIDE};
-use downpour_shaders::render::scene::{SCENE_BLENDED, SCENE_LAYERS, SCENE_MIN_LAMP, SCENE_MIN_ROUGHNESS};
+use downpour_shaders::render::scene::{
+    SCENE_BLENDED, SCENE_FAR, SCENE_LAMP_BITS, SCENE_LAMP_GLASS, SCENE_LAMP_RAYS, SCENE_LARGE_LAMP,
+    SCENE_LAYERS, SCENE_LIGHT_AREA, SCENE_LIGHT_BODY, SCENE_MIN_COSINE, SCENE_MIN_LAMP, SCENE_MIN_ROUGHNESS,
+    SCENE_PICTURE, SCENE_SAME_SHADOW, SCENE_SEEN_BODY, SCENE_SHADOW_M, SCENE_SHADOW_PART, SCENE_SHARP_PIXELS,
+};
 use glam::{Vec2, Vec3};
 
 use super::SceneView;
-use crate::brdf::brdf_direct;
+use crate::brdf::{brdf_direct, brdf_fresnel};
+use crate::scatter::scatter_tangent;
 use crate::scene::water::{puddle_water_beneath, puddle_water_entry};
 use crate::surface::Surface;
 
@@ -33,6 +41,46 @@ struct SceneArrival {
     irradiance: Vec3,
 }
 
+/// What is asked about the light of lamps on a surface.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SceneAsked {
+    /// Number of lamps that are drawn for all, by what each would give. With 0, or at least as many as there are, all lamps are
+    /// asked whether something hides them.
+    pub(crate) draws: u32,
+    /// Numbers in [0, 1): three for a place of a surface that shines, which is one of the lamps, and one for that draw.
+    pub(crate) numbers: [f32; 4],
+    /// Standoff and depth of water: see [`SceneView::scene_arrival`].
+    pub(crate) standoff: f32,
+    pub(crate) under: Vec2,
+    /// Width of the pixel, m, on the surface that the camera sees: light without hard shadows is told apart, and rays of its gloss
+    /// see what shines. `None` for other surfaces.
+    pub(crate) footprint: Option<f32>,
+}
+
+/// What one lamp gives if nothing hides it.
+struct SceneShare {
+    arrival: SceneArrival,
+    lit: Vec3,
+    glow: Vec3,
+    relief: Vec3,
+    soft: f32,
+    is_area: bool,
+}
+
+/// Light of lamps, and of surfaces that shine, at a surface.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SceneDirect {
+    /// Toward the viewer.
+    pub(crate) lit: Vec3,
+    /// On the diffuse base, over pi: of surfaces that shine, and of lamps with soft shadows. Means over neighbors are taken of it.
+    pub(crate) glow: Vec3,
+    /// What lamps of the latter give if nothing hides them: to the facet, and to the surface with its relief.
+    pub(crate) flat_light: f32,
+    pub(crate) relief_light: f32,
+    /// True if another lamp is hidden in part.
+    pub(crate) is_soft: bool,
+}
+
 impl SceneView<'_> {
     /// Fraction of light that reaches a position from a distance along a direction: surfaces that let light through dim it.
     pub(crate) fn scene_visibility(&self, position: Vec3, direction: Vec3, distance: f32) -> Vec3 {
@@ -43,7 +91,9 @@ impl SceneView<'_> {
             let hit = self.data.surface_hit(position, direction, from_distance, distance - nearest);
             let Some(hit) = hit else { return visible };
             let material = self.data.material_load(self.data.corners[hit.triangle as usize * 3].material);
-            if material.flags & SCENE_BLENDED != 0 {
+            if material.flags & SCENE_LAMP_GLASS != 0 {
+                // The light of a lamp begins in its glass.
+            } else if material.flags & SCENE_BLENDED != 0 {
                 visible *= 1.0 - self.data.surface_alpha(&material, &hit).clamp(0.0, 1.0);
             } else if material.transmission > 0.0 {
                 visible *= material.base.truncate() * material.transmission;
@@ -55,16 +105,16 @@ impl SceneView<'_> {
         Vec3::ZERO
     }
 
-    /// Light of row `index` as it arrives at a surface.
+    /// Light of a lamp as it arrives at a surface.
     ///
     /// `standoff`: a lamp that is nearer to the surface's plane than this gives it the same light from so far: a spot close
     /// to a lamp is small, and far brighter than all around it. `under`: the depth of level water over the surface, and how far
     /// the water's surface is over it in the model; light is refracted where it enters, and what Fresnel's equations do not
     /// reflect goes in.
-    fn scene_arrival(&self, index: u32, surface: &Surface, standoff: f32, under: Vec2) -> SceneArrival {
+    fn scene_arrival(&self, lamp: &Light, surface: &Surface, standoff: f32, under: Vec2) -> SceneArrival {
         let nearest = self.frame.nearest;
         let mut position = surface.position;
-        let mut light = self.data.light_load(index).light_sample(position, 0.0);
+        let mut light = lamp.light_sample(position, 0.0);
         let mut arrival = SceneArrival {
             start: position + surface.facet * nearest,
             distance: light.distance,
@@ -83,7 +133,7 @@ impl SceneView<'_> {
                 position =
                     surface.position + Vec3::Y * under.y + puddle_water_entry(light.direction, under.x);
             }
-            light = self.data.light_load(index).light_sample(position, 0.0);
+            light = lamp.light_sample(position, 0.0);
         }
         arrival.direction = light.direction;
         arrival.irradiance = light.irradiance;
@@ -105,12 +155,13 @@ impl SceneView<'_> {
     }
 
     /// Light of one lamp on a surface, toward the viewer, if nothing is between them.
-    /// `out`: [`SceneData::wet_out`](crate::data::SceneData) toward the viewer, of a surface with a film.
-    fn scene_lamp(&self, surface: &Surface, view: Vec3, light: &SceneArrival, out: Vec3) -> Vec3 {
+    /// `out`: [`SceneData::wet_out`](crate::data::SceneData) toward the viewer, of a surface with a film;
+    /// `seen`: rays of the gloss see the lamp itself.
+    fn scene_lamp(&self, surface: &Surface, view: Vec3, light: &SceneArrival, out: Vec3, seen: bool) -> Vec3 {
         if surface.facet.dot(light.direction) <= 0.0 {
             return Vec3::ZERO;
         }
-        let alpha = (surface.roughness * surface.roughness).max(SCENE_MIN_ROUGHNESS * SCENE_MIN_ROUGHNESS);
+        let alpha = scene_alpha(surface.roughness, light.spread, surface.normal.dot(view));
         let (diffuse, normal_reflectance) = (surface.diffuse * light.diffuse, surface.normal_reflectance);
         let (mut base, mut under) = (diffuse, Vec3::ZERO);
         if surface.film > 0.0 {
@@ -118,40 +169,139 @@ impl SceneView<'_> {
             under = base * out * self.data.wet_in(surface, cosine) * (surface.film * cosine);
             base *= 1.0 - surface.film;
         }
+        if seen {
+            let sum = view + light.direction;
+            let halfway = sum / sum.dot(sum).sqrt().max(BRDF_MIN_DIVISOR);
+            let fresnel = brdf_fresnel(normal_reflectance, view.dot(halfway).clamp(0.0, 1.0));
+            let cosine = surface.normal.dot(light.direction).max(0.0);
+            return light.irradiance * (under + (Vec3::ONE - fresnel) * base * cosine);
+        }
         light.irradiance
             * (under + brdf_direct(base, normal_reflectance, alpha, surface.normal, view, light.direction))
     }
 
-    /// Light of lamps and sun on a surface, toward the viewer. With `draws` of 0, or of at least as many as there are, all
-    /// lamps are asked whether something hides them; else so many are drawn by what each would give (`chance` in [0, 1)),
-    /// for all of them. `standoff` and `under`: [`SceneView::scene_arrival`].
-    pub(crate) fn scene_direct(
-        &self,
-        surface: &Surface,
-        view: Vec3,
-        draws: u32,
-        chance: f32,
-        standoff: f32,
-        under: Vec2,
-    ) -> Vec3 {
-        let count = self.frame.light_count;
+    /// Radiance of the disks of suns that the picture shows in a direction.
+    pub(crate) fn scene_suns(&self, direction: Vec3) -> Vec3 {
+        let mut sum = Vec3::ZERO;
+        if self.frame.projection != SCENE_PICTURE {
+            return sum;
+        }
+        for k in 0..self.frame.light_count {
+            let lamp = self.data.light_load(k);
+            let apart = direction + lamp.axis;
+            // A disk whose edge is a chord away takes pi times its square of the sphere.
+            let square = lamp.chord * lamp.chord;
+            if lamp.is_parallel() && apart.dot(apart) < square {
+                sum += lamp.color / square;
+            }
+        }
+        sum
+    }
+
+    /// Light that a place of a surface that shines gives to the diffuse base of a surface, over pi and the albedo.
+    fn scene_glow(&self, surface: &Surface, view: Vec3, light: &SceneArrival, out: Vec3) -> Vec3 {
+        let cosine = surface.normal.dot(light.direction);
+        if cosine <= 0.0 || surface.facet.dot(light.direction) <= 0.0 {
+            return Vec3::ZERO;
+        }
+        let sum = view + light.direction;
+        let halfway = sum / sum.dot(sum).sqrt().max(BRDF_MIN_DIVISOR);
+        let fresnel = brdf_fresnel(surface.normal_reflectance, view.dot(halfway).clamp(0.0, 1.0));
+        let mut enters = Vec3::ONE - fresnel;
+        if surface.film > 0.0 {
+            enters += (out * self.data.wet_in(surface, cosine) - enters) * surface.film;
+        }
+        light.irradiance * enters * (cosine * light.diffuse)
+    }
+
+    /// Fraction of the light of a lamp that reaches a surface: the mean over `rays` to places on its disk. Also true if they differ.
+    fn scene_shadow(&self, light: &SceneArrival, numbers: [f32; 2], rays: u32) -> (Vec3, bool) {
+        let tangent = scatter_tangent(light.along);
+        let other = light.along.cross(tangent);
+        let (mut sum, mut least, mut most) = (Vec3::ZERO, Vec3::ONE, Vec3::ZERO);
+        for k in 0..rays {
+            let (mut along, mut distance) = (light.along, light.distance);
+            if light.spread > 0.0 {
+                let offset = scene_disk(numbers, k) * light.spread;
+                let bent = along + tangent * offset.x + other * offset.y;
+                let longer = bent.dot(bent).sqrt();
+                along = bent / longer;
+                distance = if distance >= SCENE_FAR { distance } else { distance * longer };
+            }
+            let visible = self.scene_visibility(light.start, along, distance);
+            sum += visible;
+            (least, most) = (least.min(visible), most.max(visible));
+        }
+        (sum / rays as f32, (most - least).max_element() > SCENE_SAME_SHADOW)
+    }
+
+    /// Light of lamps, sun, and surfaces that shine on a surface, toward the viewer.
+    pub(crate) fn scene_direct(&self, surface: &Surface, view: Vec3, asked: &SceneAsked) -> SceneDirect {
+        let &SceneAsked { draws, numbers, standoff, under, footprint } = asked;
+        let is_first = footprint.is_some();
+        let lights = self.frame.light_count;
+        let mut count = lights;
+        let mut place = Light::default();
+        if self.frame.emitters > 0 {
+            let [x, y, z, _] = numbers;
+            place = self.data.emitter_draw(surface.position, surface.normal, [x, y, z]);
+            count += 1;
+        }
         let few = draws > 0 && draws < count;
-        let (mut sum, mut total) = (Vec3::ZERO, 0.0);
+        let glossy = is_first && self.frame.sky_rays > 0 && surface.roughness < SCENE_SEEN_BODY;
+        let mut result = SceneDirect {
+            lit: Vec3::ZERO,
+            glow: Vec3::ZERO,
+            flat_light: 0.0,
+            relief_light: 0.0,
+            is_soft: false,
+        };
         let mut out = Vec3::ONE;
         if surface.film > 0.0 {
             out = self.data.wet_out(surface, surface.normal.dot(view).max(BRDF_GRAZING));
         }
-        for k in 0..count {
-            let arrival = self.scene_arrival(k, surface, standoff, under);
-            total += light_weight(self.scene_lamp(surface, view, &arrival, out));
+        let of = |index: u32| {
+            let lamp = if index < lights { self.data.light_load(index) } else { place };
+            // Areas have a distance of their own within which their light does not grow.
+            let is_area = lamp.kind == SCENE_LIGHT_AREA;
+            let mut arrival = self.scene_arrival(&lamp, surface, if is_area { 0.0 } else { standoff }, under);
+            // The ray ends before the surface that shines.
+            arrival.distance -= if is_area { 4.0 * self.frame.nearest } else { 0.0 };
+            let soft = match footprint {
+                Some(_) if is_area => 1.0,
+                Some(footprint) => scene_softness(arrival.distance, arrival.spread, footprint),
+                None => 0.0,
+            };
+            // The part that is told apart, with the facet's normal in place of the relief's.
+            let (mut glow, mut relief) = (Vec3::ZERO, Vec3::ZERO);
+            let mut bare = *surface;
+            if soft > 0.0 {
+                relief = self.scene_glow(surface, view, &arrival, out) * soft;
+                glow = relief;
+                if !is_area {
+                    let level = Surface { normal: surface.facet, ..*surface };
+                    glow = self.scene_glow(&level, view, &arrival, out) * soft;
+                }
+                bare.diffuse *= 1.0 - soft;
+            }
+            let mut lit = Vec3::ZERO;
+            if !(is_first && is_area) {
+                let seen = glossy && lamp.kind == SCENE_LIGHT_BODY;
+                lit = self.scene_lamp(&bare, view, &arrival, out, seen);
+            }
+            SceneShare { arrival, lit, glow, relief, soft, is_area }
+        };
+        let mut total = 0.0;
+        for index in 0..count {
+            let share = of(index);
+            total += light_weight(share.lit) + light_weight(share.glow);
         }
         // Positions at equal steps along what all give together: the lamps that they fall on are drawn.
         let step = total / draws.max(1) as f32;
-        let (mut run, mut next) = (0.0, chance * step);
-        for k in 0..count {
-            let arrival = self.scene_arrival(k, surface, standoff, under);
-            let lit = self.scene_lamp(surface, view, &arrival, out);
-            let fraction = light_weight(lit);
+        let (mut run, mut next) = (0.0, numbers[3] * step);
+        for index in 0..count {
+            let SceneShare { arrival, lit, glow, relief, soft, is_area } = of(index);
+            let fraction = light_weight(lit) + light_weight(glow);
             run += fraction;
             let mut weight = 1.0;
             if few {
@@ -164,13 +314,54 @@ impl SceneView<'_> {
             } else if fraction <= total * SCENE_MIN_LAMP {
                 continue;
             }
-            let visible = self.scene_visibility(arrival.start, arrival.along, arrival.distance);
+            // Each lamp has places of its own; they come from other digits of the number that draws a lamp.
+            let place_numbers = [(61.0, 0.754_877_7), (3571.0, 0.569_840_3)]
+                .map(|(digits, turn)| ((numbers[3] * digits).fract() + index as f32 * turn).fract());
+            // One ray to a lamp that gives little: its noise is little, too.
+            let is_large = !few && soft < 1.0 && arrival.spread > 0.0 && fraction > total * SCENE_LARGE_LAMP;
+            let rays = if is_large { SCENE_LAMP_RAYS } else { 1 };
+            let (visible, is_soft) = self.scene_shadow(&arrival, place_numbers, rays);
             let pane =
                 self.pane_shadow_fraction(arrival.start, arrival.along, arrival.distance, arrival.spread);
-            sum += lit * visible * (pane * weight);
+            let passes = visible * (pane * weight);
+            result.is_soft |= is_soft;
+            result.lit += lit * passes;
+            result.glow += glow * passes;
+            if !is_area {
+                result.flat_light += light_weight(glow);
+                result.relief_light += light_weight(relief);
+            }
         }
-        sum
+        result
     }
+}
+
+/// Part of the light of a lamp at a distance, m, with a disk of a half angle, whose shadows are wide on the picture, 0 to 1: as if what
+/// throws them stood a part of the way to it.
+#[must_use]
+pub fn scene_softness(distance: f32, spread: f32, footprint: f32) -> f32 {
+    let away = (distance * SCENE_SHADOW_PART).min(SCENE_SHADOW_M);
+    let width = 2.0 * spread * away / footprint.max(1.0e-9);
+    ((width - SCENE_SHARP_PIXELS) / SCENE_SHARP_PIXELS).clamp(0.0, 1.0)
+}
+
+/// Alpha of the lobe in which a surface shows a disk of a half angle: that of a mirror is as bright as the disk. Seen at a
+/// small angle, a lobe is narrower across.
+#[must_use]
+pub fn scene_alpha(roughness: f32, spread: f32, cosine_view: f32) -> f32 {
+    let square = roughness * roughness;
+    let least = SCENE_MIN_ROUGHNESS * SCENE_MIN_ROUGHNESS;
+    let disk = 0.25 * spread * spread / cosine_view.max(SCENE_MIN_COSINE);
+    (square * square + disk).max(least * least).sqrt().min(1.0)
+}
+
+/// Place `k` on a unit disk.
+#[must_use]
+pub fn scene_disk(numbers: [f32; 2], k: u32) -> Vec2 {
+    let inverse = (k.reverse_bits() >> (32 - SCENE_LAMP_BITS)) as f32 / SCENE_LAMP_RAYS as f32;
+    let radius = (numbers[0] + inverse).fract().sqrt();
+    let angle = TAU * (numbers[1] + 0.5 * k as f32 + 0.25 * (k / 2) as f32);
+    Vec2::new(radius * ops::cos(angle), radius * ops::sin(angle))
 }
 
 impl Lighting for SceneView<'_> {

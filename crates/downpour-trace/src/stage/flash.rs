@@ -52,6 +52,7 @@ impl Stage {
         let sky = lit_clouds(flashes);
         let data = &mut stage.data;
         data.remove_emission();
+        data.emitters = 0;
         data.set_lights(&lights);
         data.set_wetness(SceneWetness::of(weather, time_s, self.origin).as_ref());
         data.sky = Arc::new(sky.texels);

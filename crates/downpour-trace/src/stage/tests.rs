@@ -112,7 +112,14 @@ fn far_away_small_steps_are_kept() {
 fn lamps_and_the_sun_have_the_unit_of_the_sky() {
     let mut all = scene(vec![node(Some(0), Vec3::ZERO), node(None, Vec3::Y)]);
     let kind = LightKind::Point;
-    all.lights = vec![Light { name: String::new(), color: Vec3::ONE, intensity: 100.0, range: None, kind }];
+    all.lights = vec![Light {
+        name: String::new(),
+        color: Vec3::ONE,
+        intensity: 100.0,
+        range: None,
+        radius: None,
+        kind,
+    }];
     all.nodes[1].light = Some(0);
     let mut all = loaded(all);
     let direction = [0.0, 1.0, 0.0];

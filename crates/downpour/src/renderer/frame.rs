@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use downpour_render::file::{write_exr, write_exr_layers, write_png};
+use downpour_render::file::{layer_channels, write_exr, write_exr_channels, write_png};
 use downpour_render::picture::Picture;
 use downpour_render::rain::RainMedium;
 use downpour_render::tone::tone_picture;
@@ -12,6 +12,7 @@ use downpour_sim::field::VisibleDrops;
 use super::RendererError;
 use super::computer::Painted;
 use super::drops::Drops;
+use super::truth::{Truth, TruthOf};
 
 /// A frame, in layers, with the drops in it.
 #[derive(Clone, Debug)]
@@ -29,6 +30,8 @@ pub struct Frame {
     pub measured_rate_mm_h: Option<f64>,
     /// The factor from radiance to [`Frame::pixels`].
     pub exposure: f32,
+    /// Truth about its pixels, where it was asked for.
+    pub truth: Option<Truth>,
     /// Triangles of the scene, all copies counted.
     pub triangles: usize,
     /// Time until it was on its way, ms: of a GPU, all that its host does for it in the thread that asked for it.
@@ -51,6 +54,7 @@ pub struct PendingFrame {
     pub(super) medium: RainMedium,
     pub(super) measured_rate_mm_h: Option<f64>,
     pub(super) exposure: f32,
+    pub(super) truth: Option<Box<TruthOf>>,
 }
 
 impl PendingFrame {
@@ -60,6 +64,8 @@ impl PendingFrame {
     /// [`RendererError`]: what the GPU says.
     pub fn finish(self) -> Result<Frame, RendererError> {
         let (mut picture, found) = self.picture.finish()?;
+        let drops = self.drops.with(found);
+        let truth = self.truth.map(|of| of.find(&picture, &drops)).transpose()?;
         for flash in self.flashes {
             let (flash, _) = flash.finish()?;
             picture.add_light(&flash);
@@ -68,7 +74,8 @@ impl PendingFrame {
         Ok(Frame {
             time_s: self.time_s,
             picture,
-            drops: self.drops.with(found),
+            drops,
+            truth,
             medium: self.medium,
             measured_rate_mm_h: self.measured_rate_mm_h,
             exposure: self.exposure,
@@ -117,14 +124,17 @@ impl Frame {
     }
 
     /// The bytes of an OpenEXR of all layers: R, G, B; clean.R, .G, .B; rain.R, .G, .B; transmittance.Y; depth.Z (metres along
-    /// the ray, 1e30 for the sky).
+    /// the ray, 1e30 for the sky). With [`Frame::truth`] also of the drop that a pixel shows most of drop.id_low and drop.id_high (the
+    /// halves of its id), drop.diameter_mm (0: none), drop.distance_m and drop.alpha; and of the surface behind it wetness.Y, water.depth_mm,
+    /// motion.X and motion.Y (pixels per second, to the right and down).
     ///
     /// # Errors
     /// As [`Frame::png`].
     pub fn exr_layers(&self) -> Result<Vec<u8>, RendererError> {
         let ([width, height], picture) = (self.size(), &self.picture);
-        let glass = picture.through_glass.as_deref();
-        Ok(write_exr_layers(width, height, &picture.clean, &picture.rain, glass)?)
+        let mut channels = layer_channels(&picture.clean, &picture.rain, picture.through_glass.as_deref());
+        channels.extend(self.truth.as_ref().map(Truth::channels).into_iter().flatten());
+        Ok(write_exr_channels([width, height], channels)?)
     }
 
     /// Writes a .png ([`Frame::png`]) or an .exr ([`Frame::exr`]); a file that is there is replaced.

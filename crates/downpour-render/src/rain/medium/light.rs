@@ -161,7 +161,7 @@ impl<'a> MediumLight<'a> {
         let spots = self.medium.lit == MEDIUM_SPOTS;
         let nothing = Vec2::splat(farthest);
         let mut span = Vec2::new(0.0, farthest);
-        if light.is_parallel {
+        if light.is_parallel() {
             return if spots { nothing } else { span };
         }
         let (axis, reach, [scale, edge]) = (light.axis, light.range, light.cone);
@@ -199,7 +199,7 @@ impl<'a> MediumLight<'a> {
         let medium = &self.medium;
         let eye = Vec3::from(medium.eye);
         let lamp = self.lighting.light(index);
-        let parallel = lamp.is_parallel;
+        let parallel = lamp.is_parallel();
         let lit = self.medium_light_span(&lamp, eye, direction, if parallel { reach.x } else { reach.y });
         if lit.y <= lit.x {
             return sum;

@@ -3,14 +3,14 @@
 //! JSON knows no kinds of number. The typed reader takes `1.0` for no index although the specification does,
 //! and makes an infinity of 1e39 without a word. Here whole numbers become integers, and a number beyond the
 //! range of `f32` is an error. `extras` may hold anything and are taken out, but for the `porosity` of a
-//! material's, which is read.
+//! material's and the `radius_m` of a lamp's, which are read.
 
 use super::spot::{Trail, shown};
 use crate::error::SceneError;
 use serde_json::{Number, Value};
 
-/// Member of a material's extras that is read.
-const POROSITY: &str = "porosity";
+/// Members of extras that are read.
+const READ: [&str; 2] = ["porosity", "radius_m"];
 
 /// Whole numbers up to here are exact in `f64`: 2^53.
 const EXACT: f64 = 9_007_199_254_740_992.0;
@@ -47,9 +47,9 @@ fn settle_at(value: &mut Value, trail: &Trail<'_>) -> Result<(), SceneError> {
                 if key == "extras"
                     && let Value::Object(own) = member
                 {
-                    own.retain(|key, _| key == POROSITY);
+                    own.retain(|key, _| READ.contains(&key.as_str()));
                 }
-                key != "extras" || member.get(POROSITY).is_some()
+                key != "extras" || READ.iter().any(|read| member.get(read).is_some())
             });
             members.iter_mut().try_for_each(|(key, member)| settle_at(member, &trail.key(key)))
         }

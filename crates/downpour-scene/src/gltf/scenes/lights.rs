@@ -13,6 +13,9 @@ const EXTENSION: &str = "KHR_lights_punctual";
 /// The largest product of color and intensity: a tenth of a millimeter from the lamp it is still within an `f32`.
 const MAX_RADIANCE: f32 = 1.0e30;
 
+/// Maximum radius of a lamp, m.
+const MAX_RADIUS_M: f32 = 100.0;
+
 /// All lights.
 pub(super) fn read(document: &Spot<'_>, warnings: &mut Warnings) -> Result<Vec<Light>, SceneError> {
     let mut all = Vec::new();
@@ -66,7 +69,17 @@ fn one(light: &Spot<'_>, warnings: &mut Warnings) -> Result<Light, SceneError> {
         );
         return Err(light.wrong(found, "up to 1e30"));
     }
-    Ok(Light { name: fields::name(light)?, color: color.into(), intensity, range, kind })
+    let mut radius = None;
+    if let Some(extras) = light.get("extras")?
+        && extras.get("radius_m")?.is_some()
+    {
+        let found = fields::from(&extras, "radius_m", 0.0, 0.0)?;
+        if found > MAX_RADIUS_M {
+            return Err(extras.need("radius_m")?.not("0 to 100 m"));
+        }
+        radius = Some(found);
+    }
+    Ok(Light { name: fields::name(light)?, color: color.into(), intensity, range, radius, kind })
 }
 
 fn spot(cone: &Spot<'_>, warnings: &mut Warnings) -> Result<LightKind, SceneError> {

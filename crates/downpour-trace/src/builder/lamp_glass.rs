@@ -1,0 +1,69 @@
+//! The glass of lamps: small surfaces that shine beside a lamp are its body, and do not light the scene a second time.
+
+use std::collections::BTreeMap;
+
+use downpour_render::light::{LightSource, light_weight};
+use glam::Vec3;
+
+/// Maximum distance of a lamp's glass from its light, m.
+const REACH_M: f32 = 0.5;
+
+/// Maximum area of a triangle of a lamp's glass, m^2: a larger one is a sign or a window.
+const LARGEST_M2: f32 = 0.25;
+
+/// Position and intensity of a lamp that is not parallel.
+fn lamp(light: &LightSource) -> Option<(Vec3, f32)> {
+    match *light {
+        LightSource::Directional { .. } => None,
+        LightSource::Point { position, intensity, .. } | LightSource::Spot { position, intensity, .. } => {
+            Some((position, light_weight(intensity)))
+        }
+    }
+}
+
+/// For each of some triangles that shine, the lamp whose glass it is: the nearest within reach.
+pub(super) fn owners(
+    triangles: &[[[f32; 3]; 3]],
+    shining: &[usize],
+    lights: &[LightSource],
+) -> BTreeMap<usize, usize> {
+    // Sorted, so that a scene of many lamps and many lit windows takes no time.
+    let mut lamps: Vec<(f32, usize, Vec3)> = (0..)
+        .zip(lights)
+        .filter_map(|(index, light)| lamp(light).map(|(position, _)| (position.x, index, position)))
+        .collect();
+    lamps.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let owner = |&triangle: &usize| {
+        let [a, b, c] = triangles[triangle].map(Vec3::from);
+        if 0.5 * (b - a).cross(c - a).length() > LARGEST_M2 {
+            return None;
+        }
+        let middle = (a + b + c) / 3.0;
+        let first = lamps.partition_point(|lamp| lamp.0 < middle.x - REACH_M);
+        lamps[first..]
+            .iter()
+            .take_while(|lamp| lamp.0 <= middle.x + REACH_M)
+            .map(|&(_, index, position)| ((position - middle).length(), index))
+            .filter(|&(distance, _)| distance <= REACH_M)
+            .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))
+            .map(|(_, index)| (triangle, index))
+    };
+    shining.iter().filter_map(owner).collect()
+}
+
+/// Radius of the sphere that is as bright as the glass of a lamp and gives the lamp's light, m: `I = pi r^2 L`. `glass`: mean
+/// emission and area of its parts. `None` if the light has a radius of its own.
+pub(super) fn radius(light: &LightSource, glass: &[(Vec3, f32)]) -> Option<f32> {
+    let own = match *light {
+        LightSource::Point { radius, .. } | LightSource::Spot { radius, .. } => radius,
+        LightSource::Directional { .. } => 0.0,
+    };
+    if own > 0.0 {
+        return None;
+    }
+    let (_, intensity) = lamp(light)?;
+    let area: f32 = glass.iter().map(|part| part.1).sum();
+    let emission: f32 = glass.iter().map(|part| light_weight(part.0) * part.1).sum::<f32>() / area;
+    let radius = (intensity / (std::f32::consts::PI * emission)).sqrt();
+    radius.is_finite().then(|| radius.min(REACH_M))
+}
