@@ -113,7 +113,7 @@ impl Picture {
     }
 
     /// Adds a picture of the same scene in other light, which has drops of its own: radiance adds up, and what is transmitted stays
-    /// that of this picture.
+    /// that of this picture. So the rain may be below 0 where drops of the other picture hide its light.
     pub fn add_light(&mut self, other: &Self) {
         let pixels = self.clean.iter_mut().zip(&mut self.rain).zip(other.clean.iter().zip(&other.rain));
         for ((clean, rain), (light, drops)) in pixels {

@@ -48,6 +48,7 @@ fn scene(poles: &[Vec3]) -> Loaded {
         color: Vec3::ONE,
         intensity: 900.0,
         range: None,
+        radius: None,
         kind: LightKind::Point,
     };
     let at = Local::Matrix(Affine3A::from_translation(Vec3::new(1.0, 4.0, 0.0)));

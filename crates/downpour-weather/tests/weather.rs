@@ -498,9 +498,9 @@ fn t11_keys_are_known_and_stand_once() {
         "unknown word \"piont\", perhaps point; allowed: point, spot",
     );
     refused(
-        "[[light]]\npoint = { position_m = [0, 0, 0], radius_m = 1 }",
+        "[[light]]\npoint = { position_m = [0, 0, 0], reach_m = 1 }",
         2,
-        "light[0].point.radius_m: unknown key",
+        "light[0].point.reach_m: unknown key",
     );
     refused("[rain]\nseed = 1\nseed = 2", 2, "line 3, column 1: duplicate key");
     refused("[rain]\n[rain]", 2, "line 2");
