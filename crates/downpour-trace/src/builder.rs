@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use downpour_bvh::Bvh;
-use downpour_shaders::render::scene::{SCENE_LAMP_GLASS, SCENE_UNLIT};
+use downpour_shaders::render::scene::{SCENE_LAMP_GLASS, SCENE_SPOT_GLASS, SCENE_UNLIT};
 use glam::{Affine3A, Vec2, Vec3, Vec4};
 
 use crate::data::{RenderCorner, SceneData};
@@ -197,7 +197,9 @@ impl SceneBuilder {
         };
         for (lamp, parts) in glass {
             let parts: Vec<_> = parts.iter().map(|&triangle| mean_emission(&data, triangle)).collect();
-            data.set_lamp_glass(lamp as u32, lamp_glass::radius(&self.lights[lamp], &parts));
+            let light = &self.lights[lamp];
+            let is_spot = matches!(light, LightSource::Spot { .. });
+            data.set_lamp_glass(lamp as u32, lamp_glass::radius(light, &parts), is_spot);
         }
         let words = emitter::words(&data, &emitters);
         if !words.is_empty() {
@@ -217,12 +219,16 @@ impl SceneBuilder {
 
     /// Gives triangles that are the glass of lamps a material of their own.
     fn mark_lamp_glass(&mut self, owners: &BTreeMap<usize, usize>) {
-        let mut marked: BTreeMap<u32, u32> = BTreeMap::new();
-        for &triangle in owners.keys() {
+        let mut marked: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+        for (&triangle, &lamp) in owners {
             let of = self.corners[triangle][0].material;
-            let own = *marked.entry(of).or_insert_with(|| {
+            let flag = match self.lights[lamp] {
+                LightSource::Spot { .. } => SCENE_SPOT_GLASS,
+                _ => SCENE_LAMP_GLASS,
+            };
+            let own = *marked.entry((of, flag)).or_insert_with(|| {
                 let look = self.materials[of as usize];
-                self.materials.push(MaterialLook { flags: look.flags | SCENE_LAMP_GLASS, ..look });
+                self.materials.push(MaterialLook { flags: look.flags | flag, ..look });
                 self.materials.len() as u32 - 1
             });
             for corner in &mut self.corners[triangle] {

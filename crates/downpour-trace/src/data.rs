@@ -140,10 +140,12 @@ impl SceneData {
         (self.puddles, self.puddle_count, self.pane, self.wetness) = (0, 0, 0, 0);
     }
 
-    /// Says how large the glass of lamp `index` is, in meters, which is in the model and shines.
-    pub(crate) fn set_lamp_glass(&mut self, index: u32, radius: Option<f32>) {
+    /// Says how large the glass of lamp `index` is, in meters, which is in the model and shines. That of a spot shines elsewhere, too.
+    pub(crate) fn set_lamp_glass(&mut self, index: u32, radius: Option<f32>, is_spot: bool) {
         let row = (self.lights + index * SCENE_LIGHT_ROWS) as usize;
-        self.table[row][3] = SCENE_LIGHT_BODY;
+        if !is_spot {
+            self.table[row][3] = SCENE_LIGHT_BODY;
+        }
         if let Some(radius) = radius {
             self.table[row + 3][2] = radius.to_bits();
         }

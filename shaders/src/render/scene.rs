@@ -43,8 +43,10 @@ shared_constants! {
         SURFACE_OPEN: f32 = 0.002;
         /// Material flag: the base color is what is seen, without light.
         SCENE_UNLIT: u32 = 8;
-        /// Material flag: shining glass for which a lamp stands.
+        /// Material flag: shining glass for which a lamp stands that shines in all directions.
         SCENE_LAMP_GLASS: u32 = 16;
+        /// Material flag: shining glass of a spot. It is seen from where the spot does not shine, too.
+        SCENE_SPOT_GLASS: u32 = 32;
         /// Roughness up to which a surface has no pores.
         SURFACE_DENSE: f32 = 0.45;
         /// Roughness from which a surface is porous all over.

@@ -49,7 +49,7 @@ fn scene_visibility(position: vec3f, direction: vec3f, distance: f32) -> vec3f {
             return visible;
         }
         let material = material_load(render_corners[hit.triangle * 3u].material);
-        if (material.flags & SCENE_LAMP_GLASS) != 0u {
+        if (material.flags & (SCENE_LAMP_GLASS | SCENE_SPOT_GLASS)) != 0u {
             // The light of a lamp begins in its glass.
         } else if (material.flags & SCENE_BLENDED) != 0u {
             visible *= 1.0 - clamp(surface_alpha(material, hit), 0.0, 1.0);

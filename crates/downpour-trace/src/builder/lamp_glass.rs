@@ -51,8 +51,9 @@ pub(super) fn owners(
     shining.iter().filter_map(owner).collect()
 }
 
-/// Radius of the sphere that is as bright as the glass of a lamp and gives the lamp's light, m: `I = pi r^2 L`. `glass`: mean
-/// emission and area of its parts. `None` if the light has a radius of its own.
+/// Radius of the sphere that is as bright as the glass of a lamp and gives the lamp's light, m: `I = pi r^2 L`; no larger than a disk of
+/// the glass's area, since the light of a spot is not all from where its glass seems to shine. `glass`: mean emission and area of
+/// its parts. `None` if the light has a radius of its own.
 pub(super) fn radius(light: &LightSource, glass: &[(Vec3, f32)]) -> Option<f32> {
     let own = match *light {
         LightSource::Point { radius, .. } | LightSource::Spot { radius, .. } => radius,
@@ -65,5 +66,6 @@ pub(super) fn radius(light: &LightSource, glass: &[(Vec3, f32)]) -> Option<f32> 
     let area: f32 = glass.iter().map(|part| part.1).sum();
     let emission: f32 = glass.iter().map(|part| light_weight(part.0) * part.1).sum::<f32>() / area;
     let radius = (intensity / (std::f32::consts::PI * emission)).sqrt();
-    radius.is_finite().then(|| radius.min(REACH_M))
+    let disk = (area / std::f32::consts::PI).sqrt();
+    radius.is_finite().then(|| radius.min(disk).min(REACH_M))
 }

@@ -13,6 +13,7 @@ use downpour_shaders::render::scene::{
     SCENE_BLENDED, SCENE_FAR, SCENE_LAMP_BITS, SCENE_LAMP_GLASS, SCENE_LAMP_RAYS, SCENE_LARGE_LAMP,
     SCENE_LAYERS, SCENE_LIGHT_AREA, SCENE_LIGHT_BODY, SCENE_MIN_COSINE, SCENE_MIN_LAMP, SCENE_MIN_ROUGHNESS,
     SCENE_PICTURE, SCENE_SAME_SHADOW, SCENE_SEEN_BODY, SCENE_SHADOW_M, SCENE_SHADOW_PART, SCENE_SHARP_PIXELS,
+    SCENE_SPOT_GLASS,
 };
 use glam::{Vec2, Vec3};
 
@@ -91,7 +92,7 @@ impl SceneView<'_> {
             let hit = self.data.surface_hit(position, direction, from_distance, distance - nearest);
             let Some(hit) = hit else { return visible };
             let material = self.data.material_load(self.data.corners[hit.triangle as usize * 3].material);
-            if material.flags & SCENE_LAMP_GLASS != 0 {
+            if material.flags & (SCENE_LAMP_GLASS | SCENE_SPOT_GLASS) != 0 {
                 // The light of a lamp begins in its glass.
             } else if material.flags & SCENE_BLENDED != 0 {
                 visible *= 1.0 - self.data.surface_alpha(&material, &hit).clamp(0.0, 1.0);
