@@ -82,7 +82,7 @@ shared_constants! {
         /// Maximum distance of these, m.
         SCENE_SHADOW_M: f32 = 5.0;
         /// Width of a shadow's edge up to which it is sharp, in pixels; from twice that on, means over neighbors are taken of it.
-        SCENE_SHARP_PIXELS: f32 = 4.0;
+        SCENE_SHARP_PIXELS: f32 = 2.0;
         /// Minimum cosine of the angle of view for the image of a lamp.
         SCENE_MIN_COSINE: f32 = 0.05;
         /// Difference of what two rays toward a lamp let through up to which all do the same.

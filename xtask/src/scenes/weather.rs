@@ -15,7 +15,7 @@ const DUSK_SKY: &str = "\n[sky]\nzenith_color = [3.2, 4.1, 6.4]\n";
 /// Clouds over a city that lights them from below.
 const NIGHT_SKY: &str = "\n[sky]\nzenith_color = [0.036, 0.034, 0.033]\n";
 /// Exposure at night, stops: black stays black, and lit windows keep their color.
-const NIGHT_EV: f32 = -2.1;
+const NIGHT_EV: f32 = -1.7;
 /// The most hollows with a puddle.
 const PUDDLES: usize = 12;
 const STORM_SKY: &str = "\n[sky]\nzenith_color = [420, 470, 540]\n";

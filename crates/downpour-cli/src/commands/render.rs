@@ -57,8 +57,8 @@ pub(crate) struct RenderArguments {
     #[arg(requires = "frames")]
     fps: Option<f64>,
     /// Write all layers into one .exr: R, G, B; clean.R, .G, .B; rain.R, .G, .B; transmittance.Y; depth.Z (meters along
-    /// the ray, 1e30 for the sky); drop.id_low, .id_high, .diameter_mm, .distance_m, .alpha of the drop that a pixel shows most
-    /// of; wetness.Y, water.depth_mm and motion.X, .Y (pixels per second) of the surface behind it.
+    /// the ray, 1e30 for the sky); of the drop that a pixel shows most of its id, diameter, distance and alpha; of the surface
+    /// behind it its wetness, depth of water and motion.
     #[arg(long)]
     layers: bool,
     /// Write statistics: counts of drops, rates, times. Of a clip: the means, and each frame's.
