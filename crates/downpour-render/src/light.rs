@@ -121,7 +121,8 @@ impl Light {
                 direction: -self.axis,
                 distance: SCENE_FAR,
                 irradiance: self.color,
-                spread: PANE_SHADOW_SUN,
+                // A small chord is as long as its angle.
+                spread: if self.chord > 0.0 { self.chord } else { PANE_SHADOW_SUN },
             };
         }
         let offset = self.position - point;

@@ -213,6 +213,36 @@ fn a_shadow_is_as_soft_as_its_lamp_is_large() -> Outcome {
     Ok(())
 }
 
+/// The same of the sun, by the angle of its disk.
+#[test]
+fn a_shadow_is_as_soft_as_the_sun_is_large() -> Outcome {
+    for radius in [0.01f32, 0.08] {
+        let mut builder = SceneBuilder::new();
+        let floor = builder.add_material(matte(0.5, 0.0));
+        let board = builder.add_material(matte(0.0, 0.0));
+        rectangle(&mut builder, floor, Vec3::ZERO, [Vec3::Z * 20.0, Vec3::X * 20.0], 1);
+        rectangle(&mut builder, board, Vec3::new(-5.0, 1.0, 0.0), [Vec3::Z * 5.0, Vec3::X * 5.0], 1);
+        builder.add_light(LightSource::Directional { direction: Vec3::NEG_Y, irradiance: Vec3::splat(10.0) });
+        let mut scene = builder.build(&SkyLight::uniform([0.0; 3]));
+        scene.set_light_radius(0, radius);
+        for (place, part) in [(-1.3, 0.0), (0.0, 0.5), (0.5, 0.804_5), (1.3, 1.0)] {
+            let x = place * radius;
+            let view = Viewpoint {
+                eye: Vec3::new(x, 0.5, -0.8),
+                forward: Vec3::new(0.0, -0.5, 0.8),
+                up: Vec3::Y,
+                fov_y: 0.02 * radius,
+            };
+            let frame = RenderFrame::new(&scene, &view, [24, 24], 1, 1, 7)?;
+            let picture = SceneView { data: &scene, frame: &frame }.picture();
+            let found = picture.iter().map(|pixel| pixel[1]).sum::<f32>() / picture.len() as f32;
+            let lit = 0.5 / std::f32::consts::PI * 10.0;
+            assert!((found / lit - part).abs() < 0.04, "{radius}, {place}: {}, {part}", found / lit);
+        }
+    }
+    Ok(())
+}
+
 /// The image of a lamp in polished floor is as bright as the lamp and no brighter.
 #[test]
 fn the_image_of_a_lamp_is_as_bright_as_the_lamp() -> Outcome {

@@ -546,6 +546,12 @@ fn lamps_that_do_not_shine() {
     refused(&spot("inner_deg = 3"), 2, "no direction; allowed: direction is needed");
     refused(&spot("direction = [0, 1, 0], inner_deg = 40, outer_deg = 40"), 2, "40 degrees within 40");
     refused(&spot("direction = [0, 1, 0], inner_deg = 40"), 2, "inner_deg: 40 degrees within 30");
+    refused(&spot("direction = [0, 1, 0], radius_m = 101"), 2, "radius_m: 101; allowed: 0 to 100 m");
+    for radius in ["0", "100"] {
+        let text = spot(&format!("direction = [0, 1, 0], radius_m = {radius}"));
+        let Lamp::Spot { radius: found, .. } = parse(&text).unwrap().lights[0] else { panic!("{text}") };
+        assert_eq!(found, radius.parse().ok());
+    }
     refused(&spot("direction = [0, 1, 0], outer_deg = 0"), 2, "outer_deg: 0 degrees within 0");
     refused(&spot("direction = [0, 1, 0], outer_deg = 90"), 2, "0 to 89.9 degrees");
     let narrow = parse(&spot("direction = [0, 1, 0], outer_deg = 3")).unwrap();

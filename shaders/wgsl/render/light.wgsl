@@ -44,7 +44,9 @@ fn light_load(index: u32) -> RenderLight {
 // The light at a point. A lamp that is nearer than `least` is as bright as from there.
 fn light_sample(light: RenderLight, point: vec3f, least: f32) -> LightSample {
     if light.kind == SCENE_LIGHT_DIRECTIONAL {
-        return LightSample(-light.axis, SCENE_FAR, light.color, PANE_SHADOW_SUN);
+        // A small chord is as long as its angle.
+        let spread = select(PANE_SHADOW_SUN, light.chord, light.chord > 0.0);
+        return LightSample(-light.axis, SCENE_FAR, light.color, spread);
     }
     let offset = light.position - point;
     let inside = max(least, light.radius);

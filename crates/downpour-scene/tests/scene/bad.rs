@@ -211,6 +211,24 @@ fn rows() -> Vec<Row> {
             "materials[0].extras.porosity: \"wet\"; allowed: a number",
         ),
         (
+            "/extensions/KHR_lights_punctual/lights/0/extras",
+            json!({"radius_m": "wide"}),
+            2,
+            "lights[0].extras.radius_m: \"wide\"; allowed: a number",
+        ),
+        (
+            "/extensions/KHR_lights_punctual/lights/0/extras",
+            json!({"radius_m": 100.5}),
+            2,
+            "lights[0].extras.radius_m: 100.5; allowed: 0 to 100 m",
+        ),
+        (
+            "/extensions/KHR_lights_punctual/lights/0/extras",
+            json!({"radius_m": -1}),
+            2,
+            "lights[0].extras.radius_m: -1",
+        ),
+        (
             "/textures",
             json!([{"source": 0}]),
             2,
