@@ -308,8 +308,11 @@ fn scene_direct(
         let digits = fract(numbers.w * vec2f(61.0, 3571.0));
         let place_numbers = fract(digits + f32(index) * vec2f(0.7548777, 0.5698403));
         // One ray to a lamp that gives little: its noise is little, too.
-        let is_large = !few && soft < 1.0 && arrival.spread > 0.0 && fraction > total * SCENE_LARGE_LAMP;
-        let shadow = scene_shadow(arrival, place_numbers, select(1u, SCENE_LAMP_RAYS, is_large));
+        let is_large = soft > 0.0 && soft < 1.0 && arrival.spread > 0.0 && fraction > total * SCENE_LARGE_LAMP;
+        // What is narrower than some pixels is the edge of a point's shadow: it would be noise.
+        var hidden = arrival;
+        hidden.spread = select(arrival.spread, 0.0, is_first && soft <= 0.0);
+        let shadow = scene_shadow(hidden, place_numbers, select(1u, SCENE_LAMP_RAYS, is_large));
         var fraction_of_pane = 1.0;
         if SCENE_PANE {
             fraction_of_pane = pane_shadow_fraction(arrival.start, arrival.along, arrival.distance, arrival.spread);

@@ -319,9 +319,13 @@ impl SceneView<'_> {
             let place_numbers = [(61.0, 0.754_877_7), (3571.0, 0.569_840_3)]
                 .map(|(digits, turn)| ((numbers[3] * digits).fract() + index as f32 * turn).fract());
             // One ray to a lamp that gives little: its noise is little, too.
-            let is_large = !few && soft < 1.0 && arrival.spread > 0.0 && fraction > total * SCENE_LARGE_LAMP;
+            let is_large =
+                soft > 0.0 && soft < 1.0 && arrival.spread > 0.0 && fraction > total * SCENE_LARGE_LAMP;
             let rays = if is_large { SCENE_LAMP_RAYS } else { 1 };
-            let (visible, is_soft) = self.scene_shadow(&arrival, place_numbers, rays);
+            // What is narrower than some pixels is the edge of a point's shadow: it would be noise.
+            let spread = if is_first && soft <= 0.0 { 0.0 } else { arrival.spread };
+            let hidden = SceneArrival { spread, ..arrival };
+            let (visible, is_soft) = self.scene_shadow(&hidden, place_numbers, rays);
             let pane =
                 self.pane_shadow_fraction(arrival.start, arrival.along, arrival.distance, arrival.spread);
             let passes = visible * (pane * weight);
