@@ -298,7 +298,7 @@ impl Renderer {
         let flashes = self.flashes(time_s, &drops, told)?;
         let triangles = stage.triangles;
         let truth = self.options.truth.then(|| {
-            let options = self.picture_options(&stage, time_s, medium.clone());
+            let options = self.picture_options(&stage, time_s, medium);
             Box::new(TruthOf { masks: Arc::clone(&self.masks), options, stage })
         });
         let begin_ms = begin.elapsed().as_secs_f64() * 1.0e3;

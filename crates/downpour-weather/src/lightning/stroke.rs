@@ -6,7 +6,7 @@ use downpour_math::ops::f64 as ops;
 pub(super) const DARK_AFTER: f64 = 8.0;
 
 /// Light of a stroke over time: it rises to its peak and decays, `peak (exp(-t / decay) - exp(-t / rise)) / p`, where `p` is the
-/// maximum of the difference. It is 0 before the stroke and [`DARK_AFTER`] decays after it.
+/// maximum of the difference. It is 0 before the stroke and `DARK_AFTER` decays after it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrokePulse {
     /// Time at which it begins, s.
