@@ -1,7 +1,8 @@
 //! Physics of a raindrop and of rain.
 //!
 //! One drop: its [`shape`] and [`axis_ratio`], its [`mesh`], its [`fall_speed`], its [`oscillation`], its
-//! [`optics`]. Many drops: their size [`distribution`], computed from a rain rate, and the [`wetness`] of what they fall on. The
+//! [`optics`]. Many drops: their size [`distribution`], computed from a rain rate, the [`wetness`] of what they fall on, and the
+//! [`splash`] of each. The
 //! media: [`water`] and [`air`].
 //!
 //! Units are SI: meters, seconds, kilograms, radians, pascals; temperatures in degrees Celsius where the name says
@@ -29,6 +30,7 @@ pub mod mesh;
 pub mod optics;
 pub mod oscillation;
 pub mod shape;
+pub mod splash;
 pub mod water;
 pub mod wetness;
 

@@ -49,7 +49,9 @@ pub(crate) mod project;
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 pub mod project;
+
 mod shapes;
+mod splash;
 #[cfg(not(feature = "parity"))]
 pub(crate) mod streak;
 #[cfg(feature = "parity")]

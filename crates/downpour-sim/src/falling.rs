@@ -1,6 +1,7 @@
 //! Drops in the form that a picture needs.
 
 use downpour_math::ops;
+use downpour_shaders::sim::field::FIELD_SPLASH;
 use glam::{DVec3, Vec3};
 
 use crate::resolved::Resolved;
@@ -14,6 +15,8 @@ pub enum DropKind {
     Falling,
     /// Rebounds from a surface that another drop hit.
     Bounced,
+    /// Crown of the splash of a drop that hit a surface.
+    Splash,
 }
 
 impl DropKind {
@@ -23,6 +26,7 @@ impl DropKind {
         match self {
             Self::Falling => "falling",
             Self::Bounced => "bounced",
+            Self::Splash => "splash",
         }
     }
 }
@@ -30,18 +34,18 @@ impl DropKind {
 /// A drop at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FallingDrop {
-    /// Position of its center, m, at [`FallingDrop::seen_s`].
+    /// Position of its center, m, at [`FallingDrop::seen_s`]; of a splash that of the middle of its height.
     pub position: DVec3,
     /// Velocity, m/s.
     pub velocity: [f32; 3],
-    /// Volume-equivalent diameter, meters.
+    /// Volume-equivalent diameter, meters; of a splash the largest diameter of its crown.
     pub diameter: f32,
     /// Id of the drop: the same at other times and in other pictures.
     pub id: u64,
     /// Origin of the drop.
     pub kind: DropKind,
     /// Part of the exposure in which the drop exists, s from the picture's time: [`FallingDrop::ALWAYS`] unless it
-    /// lands or starts while the shutter is open.
+    /// lands or starts while the shutter is open. A splash is from the impact to the end of its crown.
     pub present_s: [f32; 2],
 }
 
@@ -75,7 +79,7 @@ pub struct EyeDrop {
     pub id: u32,
     /// Part of the exposure in which it exists, s from the picture's time.
     pub present: [f32; 2],
-    /// Terminal speed, m/s; 0 if it is not known.
+    /// Terminal speed, m/s; 0 if it is not known, `FIELD_SPLASH` for a splash.
     pub speed: f32,
     /// Lower half of its id.
     pub id_low: u32,
@@ -92,7 +96,7 @@ impl EyeDrop {
             velocity: drop.velocity,
             id: drop.id as u32 ^ (drop.id >> 32) as u32,
             present: drop.present_s.map(|time| time.clamp(-ALWAYS_S, ALWAYS_S)),
-            speed: 0.0,
+            speed: if drop.kind == DropKind::Splash { FIELD_SPLASH } else { 0.0 },
             id_low: drop.id as u32,
         }
     }

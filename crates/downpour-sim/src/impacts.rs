@@ -1,4 +1,4 @@
-//! Impacts of the rain in closed form, and the droplets that rebound from them.
+//! Impacts of the rain in closed form, their splashes, and the droplets that rebound from them.
 //!
 //! The path of a drop is known, and so are the position and the time of its first hit on the way from the sky. Impacts
 //! can therefore be found for any part of space and any span of time, in any order, and they are those of the drops
@@ -26,6 +26,7 @@
 
 mod bounced;
 mod places;
+mod splashes;
 mod ways;
 
 use downpour_bvh::Hit;
@@ -34,6 +35,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use self::places::Places;
+pub use self::splashes::SplashOptions;
 use self::ways::Ways;
 use crate::SimError;
 use crate::field::{Class, RainField, check_time};

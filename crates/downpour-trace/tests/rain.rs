@@ -131,6 +131,39 @@ fn in_uniform_surroundings_drops_vanish() -> Outcome {
     Ok(())
 }
 
+/// So do crowns of splashes, at any stage and size.
+#[test]
+fn in_uniform_surroundings_splashes_vanish() -> Outcome {
+    let scene = sky(|_| [0.25, 0.5, 2.0]);
+    let crown = |k: u32| {
+        let x = f64::from(k);
+        let position =
+            DVec3::new(0.11 * (x * 0.618).fract() - 0.055, 0.09 * (x * 0.755).fract() - 0.045, -1.0);
+        let stage = 0.04 * k as f32 / 25.0;
+        FallingDrop {
+            position: position * (0.4 + 0.02 * x),
+            velocity: [0.0; 3],
+            diameter: 0.004 + 0.0003 * k as f32,
+            id: u64::from(k),
+            kind: DropKind::Splash,
+            present_s: [-stage, 0.04 - stage],
+        }
+    };
+    let crowns: Vec<FallingDrop> = (0..25).map(crown).collect();
+    let rain = RainOptions { capture_size: 128, capture_grid: 1, ..RainOptions::default() };
+    let options = PictureOptions { size: SIZE, grid: 1, sky_rays: 0, seed: 0, rain };
+    let masks = DropMasks::trace(1.333)?.with_splashes(1.333)?;
+    let shown = render_picture(&scene, &viewpoint(), &crowns, &masks, &options)?;
+    let area = covered(&shown).0;
+    assert!(area > 150.0, "{area}");
+    for pixel in shown.radiance() {
+        for (found, expected) in pixel.iter().zip([0.25, 0.5, 2.0]) {
+            assert!((found / expected - 1.0).abs() < 1.0e-3, "{pixel:?}");
+        }
+    }
+    Ok(())
+}
+
 /// A bright sky over a dark ground: a drop shows the sky below and the ground above, in both forms.
 #[test]
 fn the_image_in_a_drop_is_upside_down() -> Outcome {

@@ -9,6 +9,7 @@ use super::puddle::{self, Puddle, PuddleTable};
 use super::quantity::{Exactly, Whole};
 use super::rain::{Rain, RainTable};
 use super::sky::{Sky, SkyTable, SunSource, SunTable};
+use super::splashes::{Splashes, SplashesTable};
 use super::streaks::StreaksTable;
 use super::wetness::{Wetness, WetnessTable};
 use super::wind::{self, GustsTable, TurbulenceTable, WindFieldTable, WindTable};
@@ -40,6 +41,7 @@ struct Tables {
     glass: Option<GlassTable>,
     puddle: Vec<PuddleTable>,
     wetness: WetnessTable,
+    splashes: SplashesTable,
     output: OutputTable,
 }
 
@@ -74,6 +76,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
     Ok(Weather {
         name: String::new(),
         wetness: Wetness::checked(&tables.wetness, &rain, &positions)?,
+        splashes: Splashes::checked(&tables.splashes, &positions)?,
         lightning: Lightning::checked(&tables.lightning, &tables.flash, rain.seed, &positions)?,
         glass: tables.glass.map(|glass| glass.checked(&rain, &positions)).transpose()?,
         rain,

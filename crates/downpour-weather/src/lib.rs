@@ -34,6 +34,7 @@ mod puddle;
 mod quantity;
 mod rain;
 mod sky;
+mod splashes;
 mod streaks;
 mod wetness;
 mod wind;
@@ -61,6 +62,7 @@ pub use rain::{
     RainRefraction, RainVolume,
 };
 pub use sky::{Sky, SkySource, SunSource};
+pub use splashes::Splashes;
 pub use streaks::{StreakLook, Streaks};
 pub use wetness::{RAINED_S, Wetness, WetnessAt};
 pub use wind::WindBox;
@@ -136,6 +138,8 @@ pub struct Weather {
     pub puddles: Vec<Puddle>,
     /// Wetness of the surfaces.
     pub wetness: Wetness,
+    /// Splashes where drops hit surfaces.
+    pub splashes: Splashes,
     /// Width and height of the picture, in pixels.
     pub size: [u32; 2],
 }
@@ -158,6 +162,7 @@ impl Default for Weather {
             glass: None,
             puddles: Vec::new(),
             wetness: Wetness::default(),
+            splashes: Splashes::default(),
             size: [1280, 720],
         }
     }

@@ -103,6 +103,8 @@ ranges! {
     WetS: 0.0, 1e6, "0 to 1e6 s";
     RainedMm: 0.0, 1000.0, "0 to 1000 mm";
     StorageMm: 0.01, 10.0, "0.01 to 10 mm";
+    FilmMm: 0.05, 10.0, "0.05 to 10 mm";
+    SplashSize: 0.1, 10.0, "0.1 to 10";
     DryingS: 1.0, 1e7, "1 to 1e7 s";
     PeriodS: 0.1, 1e6, "0.1 to 1e6 s";
     RiseMs: 0.0, 100.0, "0 to 100 ms";

@@ -8,7 +8,9 @@ use std::sync::Arc;
 
 use downpour_drop::distribution::{DropSizeDistribution, ExtinctionEfficiency};
 use downpour_drop::fall_speed::TerminalSpeed;
+use downpour_drop::splash::SplashLaw;
 use downpour_sim::field::{EyeDrop, FallingDrop, RainField, VisibleDrops};
+use downpour_sim::impacts::SplashOptions;
 use downpour_sim::resolved::Resolved;
 use downpour_sim::shelter::Obstacles;
 use downpour_sim::simulation::Bounce;
@@ -44,7 +46,7 @@ pub struct ShowerView {
     pub resolved: Resolved,
     /// The pane before the eye: there is no rain on the eye's side.
     pub pane: Option<PanePlane>,
-    /// Droplets that rebound, in the world: these are found already.
+    /// Droplets that rebound, and splashes, in the world: these are found already.
     pub droplets: Vec<FallingDrop>,
 }
 
@@ -54,6 +56,8 @@ pub struct Shower {
     law: DropSizeDistribution,
     weather: Weather,
     bounce: Bounce,
+    /// Splashes of drops, unless there are none.
+    splashes: Option<SplashOptions>,
     form: Form,
 }
 
@@ -76,7 +80,8 @@ impl Shower {
             (RainVolume::ClosedForm, None) => return Err(ShowerError::NotUniform),
             _ => Form::Stepped(Box::new(Stepped::new(law.clone(), weather))),
         };
-        Ok(Self { law, weather: weather.clone(), bounce: bounce(rain), form })
+        let splashes = splashes(weather)?;
+        Ok(Self { law, weather: weather.clone(), bounce: bounce(rain), splashes, form })
     }
 
     /// True if the drops are found in closed form, and not step by step.
@@ -115,6 +120,9 @@ impl Shower {
                 let mut visible = field.visible_among(&obstacles, &view, time_s)?;
                 let least = visible.resolved.least_pixels;
                 visible.drops.extend(field.bounced(&obstacles, &view, least, time_s, &self.bounce)?);
+                if let Some(splashes) = &self.splashes {
+                    visible.drops.extend(field.splashes(&obstacles, &view, time_s, splashes)?);
+                }
                 visible
             }
             Form::Stepped(stepped) => stepped.at(scenery, stage, time_s, passed)?,
@@ -143,7 +151,11 @@ impl Shower {
         let view = View { max_drops, ..stage.view()? };
         let resolved = field.resolved(&view, time_s, max_room)?;
         let least = resolved.least_pixels;
-        let mut droplets = field.bounced(&obstacles(stage), &view, least, time_s, &self.bounce)?;
+        let obstacles = obstacles(stage);
+        let mut droplets = field.bounced(&obstacles, &view, least, time_s, &self.bounce)?;
+        if let Some(splashes) = &self.splashes {
+            droplets.extend(field.splashes(&obstacles, &view, time_s, splashes)?);
+        }
         let pane = pane_plane(&self.weather, &stage.viewpoint)?;
         if let Some(pane) = &pane {
             keep_outside(&mut droplets, pane, view.eye);
@@ -227,6 +239,16 @@ pub(crate) fn fall_speed(sizes: &DropSizeDistribution) -> f64 {
 /// Rain in closed form.
 fn closed(law: &DropSizeDistribution, rain: &Rain, wind: UniformWind) -> Result<Form, ShowerError> {
     Ok(Form::Closed(Arc::new(RainField::new(law, rain.seed)?.with_wind(wind))))
+}
+
+/// Splashes of a weather, if it has any.
+fn splashes(weather: &Weather) -> Result<Option<SplashOptions>, ShowerError> {
+    let splashes = &weather.splashes;
+    if !splashes.is_enabled {
+        return Ok(None);
+    }
+    let law = SplashLaw::new(splashes.film_m, weather.rain.air.temperature_c())?;
+    Ok(Some(SplashOptions { law, size: splashes.size }))
 }
 
 /// Bounce of drops that meet a surface.

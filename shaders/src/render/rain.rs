@@ -8,7 +8,7 @@ use crate::common::{INVOCATION, OPS, PACKING};
 use crate::drop::oscillation::OSCILLATION;
 use crate::drop::shape::SHAPE;
 use crate::mask::WOBBLE;
-use crate::sim::field::EYE_DROP;
+use crate::sim::field::{EYE_DROP, FIELD_CONSTANTS};
 use crate::{Kernel, Module};
 
 /// Every module of this file.
@@ -78,6 +78,14 @@ shared_constants! {
         PROJECT_DIAMETERS: u32 = 18;
         /// Meters between them; the first is one step.
         PROJECT_DIAMETER_STEP: f32 = 0.5e-3;
+        /// Stages of a splash that have masks, behind those of the drops.
+        PROJECT_SPLASHES: u32 = 8;
+        /// The stage of them at which it is highest.
+        PROJECT_SPLASH_TOP: f32 = 3.0;
+        /// Fraction of its duration in which it rises.
+        PROJECT_SPLASH_RISE: f32 = 0.125;
+        /// Rows of the masks: of the diameters and of the splashes.
+        PROJECT_ROWS: u32 = 26;
         /// Drops whose path is shorter than this fraction of their radius stand still.
         PROJECT_STILL: f32 = 0.05;
         /// Still drops of a smaller diameter on the picture, in pixels, are spread over the pixels around them.
@@ -132,8 +140,8 @@ shared_constants! {
         PROFILES_SHAPE_STEP: f32 = 0.1e-3;
         /// Numbers of a shape.
         PROFILES_SHAPE_WORDS: u32 = 20;
-        /// First of them: behind 18 half extents, 126 areas and 126 ovals of three numbers.
-        PROFILES_SHAPES_BEGIN: u32 = 522;
+        /// First of them: behind 26 half extents, 182 areas and 182 ovals of three numbers.
+        PROFILES_SHAPES_BEGIN: u32 = 754;
         /// Workgroups along a row: fewer than every device allows.
         PROFILES_ALONG: u32 = 32768;
         /// Samples along an edge of the mask of a drop below a pixel.
@@ -404,6 +412,7 @@ pub static PROJECT: Module = Module {
         &INVOCATION,
         &OPS,
         &EYE_DROP,
+        &FIELD_CONSTANTS,
         &RAIN_CONSTANTS,
         &PROJECT_TABLES,
         &CAMERA,

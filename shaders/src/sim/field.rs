@@ -51,6 +51,8 @@ shared_constants! {
         FIELD_RADIUS: f32 = 0.6;
         /// As good as infinite, s.
         FIELD_ALWAYS: f32 = 1.0e30;
+        /// In place of the terminal speed of a drop: a splash.
+        FIELD_SPLASH: f32 = -1.0;
         /// Distance from a surface below which a drop counts as on it, m.
         SHELTER_CLEAR: f32 = 1.0e-4;
         /// Interval at which a path is divided, s.

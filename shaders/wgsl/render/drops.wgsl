@@ -132,6 +132,11 @@ fn drops_line(off: f32, width: f32) -> f32 {
     return DROPS_LINE / width * exp(-0.5 * off * off / (width * width));
 }
 
+// True for a splash, whose masks are behind those of the diameters.
+fn drops_is_splash(drop: DropsDrop) -> bool {
+    return drop.mask_index.x >= f32(PROJECT_DIAMETERS);
+}
+
 // A still drop over a pixel: radiance times coverage, and coverage. Below a pixel it is its mean radiance.
 fn drops_still(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
     let small = drop.grid == 0u;
@@ -161,7 +166,11 @@ fn drops_still(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
             var shown = drops_shade_ray(DropsShade(drop.towards, drop.half_extent, lean, spacing, drop.mask_index), sx, sy);
             if !small {
                 let at = vec2f(sx, sy) * drop.half_extent;
-                let light = drops_spots(index, at, drops_glint_width(drop)) + drops_facing(index, drop, sx, sy);
+                // Lamps shine on a splash as on so many small drops: no glint has its place on it.
+                var light = drops_light[drops_light_row(index)].rgb;
+                if !drops_is_splash(drop) {
+                    light = drops_spots(index, at, drops_glint_width(drop)) + drops_facing(index, drop, sx, sy);
+                }
                 shown += vec4f(light * shown.w, 0.0);
             }
             sum += shown;
@@ -275,8 +284,9 @@ fn drops_pixel(index: u32, x: u32, y: u32, scene: f32) -> vec4f {
     if drops_frame.streak_color == STREAK_WHITE {
         shown = vec4f(drops_capture_texel(drops_frame.capture_last, 0, 0) * shown.w, shown.w);
     }
-    // A drop that meets a surface goes into it over its own size.
-    let before = (scene - drops_depth(drop, x, y)) / (2.0 * drop.slope * drop.distance) + 0.5;
+    // A drop that meets a surface goes into it over its own size; a splash stands on one, which hides it only from behind.
+    let sunk = (scene - drops_depth(drop, x, y)) / (2.0 * drop.slope * drop.distance);
+    let before = sunk + select(0.5, 1.5, drops_is_splash(drop));
     return shown * clamp(before, 0.0, 1.0);
 }
 

@@ -2,6 +2,8 @@
 // Method: during the exposure a drop moves along a straight line, past an eye that moves and turns. Its path is cut to the part that
 // is before the eye and in which the drop is there. What a drop looks like depends on its diameter and on how far above or below
 // the eye it is: both are looked up in tables of the masks.
+// A splash stands where the drop met the surface, at the stage of the picture's time: it has rows of its own behind those of the
+// diameters, for stages and for elevations from level to straight above.
 // Frequencies of the oscillation are integers, between the entries of a table, so that phases are the same on every device at any
 // time (oscillation.wgsl).
 // Twin: downpour_render::rain::project.
@@ -83,7 +85,7 @@ struct ProjectShown {
 
 @group(0) @binding(0) var<uniform> project_frame: ProjectFrame;
 @group(0) @binding(1) var<storage, read> project_drops: array<EyeDrop>;
-// Of the masks: half extents by diameter; areas, then ovals by diameter and elevation; then the shapes of profiles.wgsl.
+// Of the masks: half extents by row; areas, then ovals by row and elevation; then the shapes of profiles.wgsl.
 @group(0) @binding(2) var<storage, read> project_masks: array<f32>;
 // Frequencies of both modes in units of 2^-16 Hz, by the bits of the diameter.
 @group(0) @binding(3) var<storage, read> project_frequencies: array<vec2u>;
@@ -126,8 +128,8 @@ fn project_position(drop: EyeDrop, time: f32) -> vec3f {
     return eye_drop_position(drop, project_frame.eye_velocity, project_frame.turning, time);
 }
 
-// The path of a drop whose middle is at `middle`.
-fn project_path(drop: EyeDrop, middle: vec3f, present: vec2f) -> ProjectPath {
+// The path of a drop whose middle is at `middle`, or of a splash, which has none.
+fn project_path(drop: EyeDrop, middle: vec3f, present: vec2f, is_splash: bool) -> ProjectPath {
     let radius = 0.5 * drop.diameter;
     let distance = sqrt(dot(middle, middle));
     let towards = middle / distance;
@@ -136,7 +138,7 @@ fn project_path(drop: EyeDrop, middle: vec3f, present: vec2f) -> ProjectPath {
         middle, distance, middle, distance, vec3f(0.0), 1.0, vec2f(0.0, 1.0), false, true,
     );
     let shutter = project_frame.shutter;
-    if shutter == 0.0 {
+    if shutter == 0.0 || is_splash {
         return path;
     }
     let open = project_position(drop, -0.5 * shutter);
@@ -208,11 +210,11 @@ fn project_modes(drop: EyeDrop, towards: vec3f, part: vec2f) -> ProjectModes {
     );
 }
 
-// A value of the masks between two diameters and two elevations; `stride` numbers for each.
+// A value of the masks between two rows and two elevations; `stride` numbers for each.
 fn project_between(first: u32, stride: u32, index: vec2f) -> f32 {
     let low = vec2u(floor(index));
     let part = index - floor(index);
-    let high = vec2u(min(low.x + 1u, PROJECT_DIAMETERS - 1u), min(low.y + 1u, DROPS_ELEVATIONS - 1u));
+    let high = vec2u(min(low.x + 1u, PROJECT_ROWS - 1u), min(low.y + 1u, DROPS_ELEVATIONS - 1u));
     let near = first + low.x * DROPS_ELEVATIONS * stride;
     let far = first + high.x * DROPS_ELEVATIONS * stride;
     let a = project_masks[near + low.y * stride] * (1.0 - part.y) + project_masks[near + high.y * stride] * part.y;
@@ -228,12 +230,29 @@ fn project_lookup(diameter: f32, elevation: f32) -> ProjectMask {
     let turned = clamp((elevation / STREAK_QUARTER + 1.0) * half_turn, 0.0, 2.0 * half_turn);
     // A sphere is the same from everywhere: one mask does.
     let is_sphere = row == 0.0 && project_frame.small_are_round == 1u;
-    let index = vec2f(row, select(turned, half_turn, is_sphere));
-    let low = u32(floor(row));
-    let part = row - floor(row);
-    let extent = project_masks[low] * (1.0 - part) + project_masks[min(low + 1u, PROJECT_DIAMETERS - 1u)] * part;
-    let areas = PROJECT_DIAMETERS;
-    let ovals = areas + PROJECT_DIAMETERS * DROPS_ELEVATIONS;
+    return project_mask(vec2f(row, select(turned, half_turn, is_sphere)));
+}
+
+// Position among the masks of a splash that is seen from `elevation` radians above it, at the picture's time.
+fn project_splash(present: vec2f, elevation: f32) -> ProjectMask {
+    let stage = clamp(-present.x / max(present.y - present.x, 1.0e-9), 0.0, 1.0);
+    let rise = PROJECT_SPLASH_TOP * min(stage / PROJECT_SPLASH_RISE, 1.0);
+    let fall = max(stage - PROJECT_SPLASH_RISE, 0.0) / (1.0 - PROJECT_SPLASH_RISE);
+    let row = rise + (f32(PROJECT_SPLASHES - 1u) - PROJECT_SPLASH_TOP) * fall;
+    let turned = elevation / STREAK_QUARTER * f32(DROPS_ELEVATIONS - 1u);
+    return project_mask(vec2f(
+        f32(PROJECT_DIAMETERS) + clamp(row, 0.0, f32(PROJECT_SPLASHES - 1u)),
+        clamp(turned, 0.0, f32(DROPS_ELEVATIONS - 1u)),
+    ));
+}
+
+// What the masks at a fractional row and elevation say of an outline.
+fn project_mask(index: vec2f) -> ProjectMask {
+    let low = u32(floor(index.x));
+    let part = index.x - floor(index.x);
+    let extent = project_masks[low] * (1.0 - part) + project_masks[min(low + 1u, PROJECT_ROWS - 1u)] * part;
+    let areas = PROJECT_ROWS;
+    let ovals = areas + PROJECT_ROWS * DROPS_ELEVATIONS;
     return ProjectMask(
         index,
         extent,
@@ -281,7 +300,9 @@ fn project_drop(drop: EyeDrop) -> ProjectShown {
     shown.drop.reach = -1.0;
     let camera = project_frame.camera;
     let shutter = project_frame.shutter;
-    let present = project_present(drop.present, shutter);
+    let is_splash = drop.speed == FIELD_SPLASH;
+    // A splash is there for all of the exposure, or not at all.
+    let present = project_present(drop.present, select(shutter, 0.0, is_splash));
     if present.x > present.y {
         return shown;
     }
@@ -297,11 +318,17 @@ fn project_drop(drop: EyeDrop) -> ProjectShown {
     if cosine < 0.05 {
         return shown;
     }
-    let path = project_path(drop, offset, present);
+    let path = project_path(drop, offset, present, is_splash);
     if !path.is_there {
         return shown;
     }
-    let mask = project_lookup(drop.diameter, asin(clamp(-towards.y, -1.0, 1.0)));
+    let elevation = asin(clamp(-towards.y, -1.0, 1.0));
+    var mask: ProjectMask;
+    if is_splash {
+        mask = project_splash(drop.present, elevation);
+    } else {
+        mask = project_lookup(drop.diameter, elevation);
+    }
     let distance = path.depth;
     let slope = radius / distance;
     // The plane of the picture is farther away, and slanted, away from the middle.

@@ -42,6 +42,21 @@ use crate::{FunctionCase, KernelCase, Tol};
 
 const SIZE: [u32; 2] = [96, 64];
 
+/// Crowns of splashes at all stages, over tens of pixels, some half behind what stands in the scene.
+fn splashes(eye: Vec3, forward: Vec3) -> Vec<FallingDrop> {
+    let crown = |(k, drop): (u32, FallingDrop)| {
+        let stage = 0.05 * (k % 20) as f32 + 0.01;
+        FallingDrop {
+            velocity: [0.0; 3],
+            diameter: 0.01 + 8.0 * drop.diameter,
+            kind: DropKind::Splash,
+            present_s: [-0.04 * stage, 0.04 * (1.0 - stage)],
+            ..drop
+        }
+    };
+    (0..).zip(drops(eye, forward)).filter(|(k, _)| k % 5 == 0).map(crown).collect()
+}
+
 /// Drops of all sizes before, between and behind what stands in the scene: some over hundreds of pixels, some below one.
 fn drops(eye: Vec3, forward: Vec3) -> Vec<FallingDrop> {
     let forward = forward.normalize();
@@ -177,7 +192,11 @@ impl Prepared {
         let frame = RenderFrame::new(&scene, &view, SIZE, 1, 1, 7).expect("a frame");
         let medium = medium(masks, eye);
         let options = RainOptions { capture_size: 64, capture_grid: 2, medium, ..options };
-        let rain = Rain::new(&frame.camera, DVec3::from(eye), &drops(eye, forward), masks, &options);
+        let mut shown = drops(eye, forward);
+        if masks.has_splashes() {
+            shown.extend(splashes(eye, forward));
+        }
+        let rain = Rain::new(&frame.camera, DVec3::from(eye), &shown, masks, &options);
         assert!(rain.list.len() > 100, "{} drops", rain.list.len());
         let clean = SceneView { data: &scene, frame: &frame }.picture();
         let capture = trace_environment(&scene, &frame, &rain.environment);
@@ -193,7 +212,7 @@ fn masks_case(
     part: Part,
 ) -> Result<Run, GpuError> {
     // Masks with an atlas have their own exposures.
-    let key = format!("{eye} {forward} {options:?}");
+    let key = format!("{eye} {forward} {options:?} {}", masks.has_splashes());
     let prepared = kept(&key, || Prepared::new([eye, forward], options, masks));
     let Prepared { scene, frame, rain, capture, clean } = &*prepared;
     let view = SceneView { data: scene, frame };
@@ -487,6 +506,10 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         drops("main_drops: from above", |gpu| {
             let (eye, forward) = (Vec3::new(0.1, 3.0, 0.4), Vec3::new(0.05, -1.0, -0.1));
             rain_case(gpu, [eye, forward], RefractionForm::Direction, Exposure::default(), Part::Drops)
+        }),
+        drops("main_drops: splashes", |gpu| {
+            let masks = DropMasks::trace(1.333).and_then(|masks| masks.with_splashes(1.333)).expect("masks");
+            masks_case(gpu, ABOVE, RainOptions::default(), &masks, Part::Drops)
         }),
         drops("main_drops: Rousseau 2006", |gpu| {
             let (eye, forward) = (Vec3::new(0.6, 1.4, 3.0), Vec3::new(-0.2, -0.4, -1.0));

@@ -6,7 +6,7 @@ use downpour_shaders::render::drop_light::DROP_ATLAS_ROWS;
 use downpour_shaders::render::medium::{MEDIUM_SKY, MEDIUM_SKY_REACH};
 use downpour_shaders::render::rain::{
     DROPS_ATLAS_TAPS, DROPS_GLINT, DROPS_LINE, DROPS_OPAQUE, DROPS_SMALL_GRID, DROPS_STILL, DROPS_TABLE,
-    STREAK_FINE, STREAK_GOLDEN, STREAK_LATTICE, STREAK_WHITE,
+    PROJECT_DIAMETERS, STREAK_FINE, STREAK_GOLDEN, STREAK_LATTICE, STREAK_WHITE,
 };
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
@@ -49,6 +49,12 @@ pub fn drops_shift(line: u32) -> f32 {
 #[must_use]
 pub fn drops_turns(drop: &DropsDrop, way: f32) -> f32 {
     drop.mode_phase[2] + drop.cycles[0] * streak_time(drop.depth_ratio, way)
+}
+
+/// True for a splash, whose masks are behind those of the diameters.
+#[must_use]
+pub fn drops_is_splash(drop: &DropsDrop) -> bool {
+    drop.mask_index[0] >= PROJECT_DIAMETERS as f32
 }
 
 /// Data that the kernel reads.
@@ -216,8 +222,12 @@ impl Buffers<'_> {
                 let mut shown = self.view.drops_shade_ray(&shade, sx, sy);
                 if !small {
                     let at = Vec2::new(sx, sy) * drop.half_extent;
-                    let spots = self.drops_spots(index, at, self.drops_glint_width(drop));
-                    let light = spots + self.drops_facing(index, drop, sx, sy);
+                    // Lamps shine on a splash as on so many small drops: no glint has its place on it.
+                    let mut light = Vec4::from(self.drops_light_row(index)[0]).truncate();
+                    if !drops_is_splash(drop) {
+                        let spots = self.drops_spots(index, at, self.drops_glint_width(drop));
+                        light = spots + self.drops_facing(index, drop, sx, sy);
+                    }
                     shown += (light * shown.w).extend(0.0);
                 }
                 sum += shown;
@@ -328,8 +338,9 @@ impl Buffers<'_> {
             let white = self.view.drops_capture_texel(self.view.frame.capture_last, 0, 0);
             shown = (white * shown.w).extend(shown.w);
         }
-        // A drop that meets a surface goes into it over its own size.
-        let before = (scene - self.drops_depth(drop, x, y)) / (2.0 * drop.slope * drop.distance) + 0.5;
+        // A drop that meets a surface goes into it over its own size; a splash stands on one, which hides it only from behind.
+        let sunk = (scene - self.drops_depth(drop, x, y)) / (2.0 * drop.slope * drop.distance);
+        let before = sunk + if drops_is_splash(drop) { 1.5 } else { 0.5 };
         shown * before.clamp(0.0, 1.0)
     }
 

@@ -2,6 +2,8 @@
 //!
 //! A drop's mask depends on its diameter (its shape) and on how far above or below it the viewer is. Masks are traced
 //! for diameters half a millimeter apart and elevations 30 degrees apart; the shader goes between them linearly.
+//!
+//! Behind them are those of splashes, for stages of their crown and elevations 15 degrees apart, from level to straight above.
 
 use downpour_math::OutOfRange;
 use std::sync::Arc;
@@ -16,11 +18,12 @@ use downpour_mask::{
 use downpour_math::packing::{packing_octahedral_encode, packing_pack_snorm, packing_pack_unorm};
 use downpour_shaders::render::rain::{
     DROPS_ELEVATIONS, DROPS_TEXEL_WORDS, PROFILES_SHAPE_WORDS, PROFILES_SHAPES, PROFILES_SHAPES_BEGIN,
-    PROJECT_DIAMETERS,
+    PROJECT_DIAMETERS, PROJECT_ROWS, PROJECT_SPLASH_RISE, PROJECT_SPLASH_TOP, PROJECT_SPLASHES,
 };
 
 use super::drops_atlas;
 use super::light::DropLightTable;
+use super::splash;
 use super::streak_path::StreakPath;
 
 /// Number of diameters, from a sphere to the largest drop with a known shape.
@@ -52,7 +55,9 @@ pub struct DropMasks {
     pub light: DropLightTable,
     /// True if drops of the smallest diameter look the same from everywhere.
     small_are_round: bool,
-    /// Half the width of the masks of each diameter; the area of the outline of each mask; the oval of each outline (half its width,
+    /// True if there are masks of splashes.
+    has_splashes: bool,
+    /// Half the width of the masks of each row; the area of the outline of each mask; the oval of each outline (half its width,
     /// half its height, and how far its middle is up); all in equivalent radii. Then shapes of drops for the rays of streaks,
     /// [`SHAPE_STEP`] apart: coefficients, volume, half width and height, and refractive index.
     tables: Arc<Vec<f32>>,
@@ -64,6 +69,16 @@ struct Outlines {
     half_extents: Vec<f32>,
     areas: Vec<f32>,
     ovals: Vec<[f32; 3]>,
+}
+
+impl Outlines {
+    /// Adds nothing, up to the last row.
+    fn pad(&mut self) {
+        let rows = PROJECT_ROWS as usize;
+        self.half_extents.resize(rows, 0.0);
+        self.areas.resize(rows * DROPS_ELEVATIONS as usize, 0.0);
+        self.ovals.resize(rows * DROPS_ELEVATIONS as usize, [0.0; 3]);
+    }
 }
 
 /// Masks of a drop: their rows, and what they say of its outline.
@@ -97,7 +112,7 @@ impl DropMasks {
             let seen = views.iter().map(|&view| trace_drop(&shape, &options(view, refractive_index)));
             masks.append(&mut outlines, &seen.collect::<Result<Vec<Mask>, _>>()?);
         }
-        Ok(masks.with_tables(&outlines, table, refractive_index))
+        Ok(masks.with_tables(outlines, table, refractive_index))
     }
 
     /// Traces the masks of a model instead of the drops' shapes: scaled to their volume, its +Y up, its +Z toward the eye.
@@ -113,7 +128,7 @@ impl DropMasks {
         for _ in 0..DIAMETERS {
             masks.append(&mut outlines, &seen);
         }
-        Ok(masks.with_tables(&outlines, ShapeTable::default(), refractive_index))
+        Ok(masks.with_tables(outlines, ShapeTable::default(), refractive_index))
     }
 
     /// No masks yet.
@@ -131,6 +146,7 @@ impl DropMasks {
                 })
             })?,
             small_are_round: true,
+            has_splashes: false,
             tables: Arc::default(),
         })
     }
@@ -162,7 +178,8 @@ impl DropMasks {
     }
 
     /// The masks with the tables of their outlines and of the shapes.
-    fn with_tables(self, outlines: &Outlines, table: ShapeTable, refractive_index: f64) -> Self {
+    fn with_tables(self, mut outlines: Outlines, table: ShapeTable, refractive_index: f64) -> Self {
+        outlines.pad();
         let mut tables = outlines.half_extents.clone();
         tables.extend(&outlines.areas);
         tables.extend(outlines.ovals.iter().flatten());
@@ -181,17 +198,54 @@ impl DropMasks {
         &self.tables
     }
 
+    /// Returns the masks with those of splashes behind them, for a refractive index.
+    ///
+    /// # Errors
+    /// As [`DropMasks::trace`].
+    pub fn with_splashes(mut self, refractive_index: f64) -> Result<Self, MaskError> {
+        if self.has_splashes {
+            return Ok(self);
+        }
+        let splashes = splash::masks(refractive_index)?;
+        let mut outlines = Outlines::default();
+        let atlas = if self.atlas > 0 { self.atlas as usize } else { self.words.len() };
+        let behind = Arc::make_mut(&mut self.words).split_off(atlas);
+        for seen in splashes.iter() {
+            self.append(&mut outlines, seen);
+        }
+        if self.atlas > 0 {
+            self.atlas = self.words.len() as u32;
+        }
+        Arc::make_mut(&mut self.words).extend(behind);
+        let tables = Arc::make_mut(&mut self.tables);
+        let (rows, first) = (PROJECT_ROWS as usize, DIAMETERS as usize);
+        let each = DROPS_ELEVATIONS as usize;
+        tables[first..rows].copy_from_slice(&outlines.half_extents);
+        tables[rows + first * each..rows + rows * each].copy_from_slice(&outlines.areas);
+        let ovals = rows + rows * each;
+        tables[ovals + first * each * 3..ovals + rows * each * 3]
+            .copy_from_slice(outlines.ovals.as_flattened());
+        self.has_splashes = true;
+        Ok(self)
+    }
+
+    /// True if there are masks of splashes.
+    #[must_use]
+    pub fn has_splashes(&self) -> bool {
+        self.has_splashes
+    }
+
     /// True if drops of the smallest diameter look the same from everywhere.
     #[must_use]
     pub fn small_are_round(&self) -> bool {
         self.small_are_round
     }
 
-    /// A value of the masks between two diameters and two elevations; `stride` numbers for each.
+    /// A value of the masks between two rows and two elevations; `stride` numbers for each.
     fn project_between(&self, first: u32, stride: u32, index: [f32; 2]) -> f32 {
         let [row, column] = index;
         let (low, part) = ([row as u32, column as u32], [row - row.floor(), column - column.floor()]);
-        let high = [(low[0] + 1).min(DIAMETERS - 1), (low[1] + 1).min(DROPS_ELEVATIONS - 1)];
+        let high = [(low[0] + 1).min(PROJECT_ROWS - 1), (low[1] + 1).min(DROPS_ELEVATIONS - 1)];
         let at = |row: u32, column: u32| {
             self.tables[(first + (row * DROPS_ELEVATIONS + column) * stride) as usize]
         };
@@ -207,11 +261,29 @@ impl DropMasks {
         let turned = (elevation / std::f32::consts::FRAC_PI_2 + 1.0) * half;
         // A sphere is the same from everywhere: one mask does.
         let column = if row == 0.0 && self.small_are_round { half } else { turned.clamp(0.0, 2.0 * half) };
-        let index = [row, column];
+        self.project_mask([row, column])
+    }
+
+    /// Position among the masks of a splash that is seen from `elevation` radians above it, at the picture's time.
+    pub(crate) fn project_splash(&self, present: [f32; 2], elevation: f32) -> MaskLookup {
+        let [begin, end] = present;
+        let stage = (-begin / (end - begin).max(1.0e-9)).clamp(0.0, 1.0);
+        let rise = PROJECT_SPLASH_TOP * (stage / PROJECT_SPLASH_RISE).min(1.0);
+        let fall = (stage - PROJECT_SPLASH_RISE).max(0.0) / (1.0 - PROJECT_SPLASH_RISE);
+        let last = (PROJECT_SPLASHES - 1) as f32;
+        let row = rise + (last - PROJECT_SPLASH_TOP) * fall;
+        let above = (DROPS_ELEVATIONS - 1) as f32;
+        let turned = elevation / std::f32::consts::FRAC_PI_2 * above;
+        self.project_mask([DIAMETERS as f32 + row.clamp(0.0, last), turned.clamp(0.0, above)])
+    }
+
+    /// What the masks at a fractional row and elevation say of an outline.
+    fn project_mask(&self, index: [f32; 2]) -> MaskLookup {
+        let [row, _] = index;
         let (low, part) = (row as u32, row - row.floor());
-        let extent = |k: u32| self.tables[k.min(DIAMETERS - 1) as usize];
-        let areas = DIAMETERS;
-        let ovals = areas + DIAMETERS * DROPS_ELEVATIONS;
+        let extent = |k: u32| self.tables[k.min(PROJECT_ROWS - 1) as usize];
+        let areas = PROJECT_ROWS;
+        let ovals = areas + PROJECT_ROWS * DROPS_ELEVATIONS;
         MaskLookup {
             index,
             half_extent: extent(low) * (1.0 - part) + extent(low + 1) * part,
@@ -256,7 +328,7 @@ fn views() -> Result<Vec<View>, MaskError> {
     (0..DROPS_ELEVATIONS).map(|step| View::from_elevation(elevation(step))).collect()
 }
 
-fn options(view: View, refractive_index: f64) -> MaskOptions {
+pub(super) fn options(view: View, refractive_index: f64) -> MaskOptions {
     MaskOptions { size: SIZE, view, refractive_index }
 }
 

@@ -13,6 +13,7 @@ use downpour_shaders::render::rain::{
     PROJECT_NARROW, PROJECT_NARROW_SAMPLES, PROJECT_OSCILLATES_MAX, PROJECT_OSCILLATES_MIN, PROJECT_SMALL,
     PROJECT_STILL, PROJECT_THIN, PROJECT_WIDE_SAMPLES, STREAK_TURN,
 };
+use downpour_shaders::sim::field::FIELD_SPLASH;
 use downpour_sim::field::EyeDrop;
 use glam::{Vec2, Vec3};
 
@@ -248,8 +249,15 @@ impl<'a> Projector<'a> {
         drop.eye_drop_position(self.frame.eye_velocity, self.frame.turning, time)
     }
 
-    /// The path of a drop whose middle is at `middle`; `None` if too little of it is there to be seen.
-    fn project_path(&self, drop: &EyeDrop, middle: Vec3, present: [f32; 2]) -> Option<ProjectPath> {
+    /// The path of a drop whose middle is at `middle`, or of a splash, which has none; `None` if too little of it is there to be
+    /// seen.
+    fn project_path(
+        &self,
+        drop: &EyeDrop,
+        middle: Vec3,
+        present: [f32; 2],
+        is_splash: bool,
+    ) -> Option<ProjectPath> {
         let radius = 0.5 * drop.diameter;
         let distance = middle.length();
         let towards = middle / distance;
@@ -263,7 +271,7 @@ impl<'a> Projector<'a> {
             moves: false,
         };
         let shutter = self.frame.shutter;
-        if shutter == 0.0 {
+        if shutter == 0.0 || is_splash {
             return Some(still);
         }
         let [open, close] = [-0.5, 0.5].map(|half| self.project_position(drop, half * shutter));
@@ -334,7 +342,9 @@ impl<'a> Projector<'a> {
     pub fn project_drop(&self, drop: &EyeDrop) -> Option<Projected> {
         let frame = &self.frame;
         let camera = &frame.camera;
-        let present = project_present(drop.present, frame.shutter);
+        let is_splash = drop.speed == FIELD_SPLASH;
+        // A splash is there for all of the exposure, or not at all.
+        let present = project_present(drop.present, if is_splash { 0.0 } else { frame.shutter });
         if present[0] > present[1] {
             return None;
         }
@@ -350,8 +360,13 @@ impl<'a> Projector<'a> {
         if cosine < 0.05 {
             return None;
         }
-        let path = self.project_path(drop, offset, present)?;
-        let mask = self.masks.project_lookup(drop.diameter, ops::asin((-towards.y).clamp(-1.0, 1.0)));
+        let path = self.project_path(drop, offset, present, is_splash)?;
+        let elevation = ops::asin((-towards.y).clamp(-1.0, 1.0));
+        let mask = if is_splash {
+            self.masks.project_splash(drop.present, elevation)
+        } else {
+            self.masks.project_lookup(drop.diameter, elevation)
+        };
         let distance = path.depth;
         let slope = radius / distance;
         // The plane of the picture is farther away, and slanted, away from the middle.

@@ -22,6 +22,7 @@ use downpour_shaders::render::rain::{
     PROFILES, PROFILES_CLEAR_KERNEL, PROFILES_FINISH_KERNEL, PROFILES_LEVELS, PROFILES_MEASURE_KERNEL,
     PROFILES_PLACE_KERNEL, PROJECT, PROJECT_KERNEL,
 };
+use downpour_shaders::sim::field::FIELD_SPLASH;
 use downpour_sim::field::EyeDrop;
 use glam::Vec3;
 
@@ -200,6 +201,18 @@ fn drops() -> Vec<EyeDrop> {
             id_low: 0,
         }
     };
+    // Some are splashes, at any stage, or not there yet, or no longer.
+    let splash = |k: u32, drop: EyeDrop| {
+        let [a, b, ..] = rng_draw([3, 5], k, 0, 0).map(rng_unit);
+        EyeDrop {
+            diameter: 8.0 * drop.diameter,
+            velocity: [0.0; 3],
+            present: [0.04 * (0.05 - a), 0.04 * (0.95 - a + 0.1 * b)],
+            speed: FIELD_SPLASH,
+            ..drop
+        }
+    };
+    let one = |k| if k % 10 == 3 { splash(k, one(k)) } else { one(k) };
     (0..COUNT).map(one).collect()
 }
 
@@ -240,7 +253,7 @@ fn options(kind: Kind) -> RainOptions {
 }
 
 fn project_case(gpu: &Gpu, kind: Kind) -> Result<Run, GpuError> {
-    let masks = DropMasks::trace(1.333).expect("masks");
+    let masks = DropMasks::trace(1.333).and_then(|masks| masks.with_splashes(1.333)).expect("masks");
     let (camera, options, drops) = (camera(), options(kind), drops());
     let mut frame = ProjectFrame::new(&camera, &masks, &options, COUNT);
     // Some places stay empty.

@@ -1,0 +1,145 @@
+//! Splash of a drop on a wet surface: whether there is one, and the size, duration and shape of its crown.
+//!
+//! Laws:
+//! - threshold: `K = We^0.5 Re^0.25` above 57.7 (C. Mundo, M. Sommerfeld, C. Tropea, Int. J. Multiphase Flow 21, 1995), with the
+//!   Weber number `We = rho u^2 d / sigma` and the Reynolds number `Re = rho u d / mu` of the speed `u` toward the surface. At
+//!   terminal speed drops from 0.69 mm on splash;
+//! - radius of the crown: `r / d = (2/3)^(1/4) (d / h)^(1/4) (u t / d)^(1/2)` on a film of depth `h` (A. L. Yarin, D. A. Weiss,
+//!   J. Fluid Mech. 283, 1995), until it is highest at `u t / d =` [`RISE_TIMES`], after which it grows no more;
+//! - duration: the crown rises in [`RISE_SHARE`] of it and falls back in the rest. For a drop of 3 mm on a film of half a
+//!   millimeter this is 36 ms, about the free fall from the height of its crown.
+//!
+//! The threshold is from a published table. [`RISE_TIMES`] and [`RISE_SHARE`] are of the order that high-speed pictures of splashes
+//! show, and are not fitted to measurements. The shape ([`crown`]) is a model.
+//!
+//! Units: m, s, m/s.
+
+pub mod crown;
+
+use downpour_math::in_range;
+use downpour_shaders::render::rain::PROJECT_SPLASH_RISE;
+
+use crate::{DropError, water};
+
+/// Least splash parameter `K` of a drop that splashes.
+pub const THRESHOLD: f64 = 57.7;
+
+/// Time at which a crown is highest, in drop diameters over the drop's speed.
+pub const RISE_TIMES: f64 = 12.0;
+
+/// Fraction of a crown's duration in which it rises.
+pub const RISE_SHARE: f64 = PROJECT_SPLASH_RISE as f64;
+
+/// Depth of the film on a surface in rain, in m.
+pub const FILM_M: f64 = 0.5e-3;
+
+/// Splashes on a film of water.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SplashLaw {
+    film_m: f64,
+    density: f64,
+    surface_tension: f64,
+    viscosity: f64,
+}
+
+/// Splash of one drop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Splash {
+    /// Largest radius of the crown, in m.
+    pub radius_m: f64,
+    /// Time from the impact to the end of the crown, in s.
+    pub duration_s: f64,
+}
+
+impl SplashLaw {
+    /// Splashes on a film of a depth in m, at a temperature in Celsius.
+    ///
+    /// # Errors
+    /// [`DropError::OutOfRange`] for a film that is not 0.05 to 10 mm deep, or a temperature outside
+    /// [`water::TEMPERATURE_RANGE_C`].
+    pub fn new(film_m: f64, temperature_c: f64) -> Result<Self, DropError> {
+        in_range("film of water", film_m, "mm", &(0.05e-3..=0.01), 1.0e3, "0.05 to 10")?;
+        Ok(Self {
+            film_m,
+            density: water::density(temperature_c)?,
+            surface_tension: water::surface_tension(temperature_c)?,
+            viscosity: water::viscosity(temperature_c)?,
+        })
+    }
+
+    /// Splash parameter `K` of a drop of a diameter in m that meets a surface with a speed toward it in m/s.
+    ///
+    /// ```
+    /// use downpour_drop::splash::{FILM_M, SplashLaw};
+    /// let k = SplashLaw::new(FILM_M, 20.0)?.parameter(2.0e-3, 6.49);
+    /// assert!((k - 363.0).abs() < 4.0);
+    /// # Ok::<(), downpour_drop::DropError>(())
+    /// ```
+    #[must_use]
+    pub fn parameter(&self, diameter_m: f64, speed_m_s: f64) -> f64 {
+        let weber = self.density * speed_m_s * speed_m_s * diameter_m / self.surface_tension;
+        let reynolds = self.density * speed_m_s * diameter_m / self.viscosity;
+        weber.sqrt() * reynolds.sqrt().sqrt()
+    }
+
+    /// Splash of a drop of a diameter in m that meets a surface with a speed toward it in m/s; `None` if it does not splash.
+    #[must_use]
+    pub fn splash(&self, diameter_m: f64, speed_m_s: f64) -> Option<Splash> {
+        let splashes = speed_m_s > 0.0 && self.parameter(diameter_m, speed_m_s) > THRESHOLD;
+        splashes.then(|| Splash {
+            radius_m: self.radius(diameter_m, speed_m_s, RISE_TIMES * diameter_m / speed_m_s),
+            duration_s: RISE_TIMES * diameter_m / speed_m_s / RISE_SHARE,
+        })
+    }
+
+    /// Radius of a crown in m at a time in s after the impact, up to the one at which it is highest.
+    #[must_use]
+    pub fn radius(&self, diameter_m: f64, speed_m_s: f64, time_s: f64) -> f64 {
+        let times = (speed_m_s * time_s / diameter_m).clamp(0.0, RISE_TIMES);
+        let shape = (2.0 / 3.0 * diameter_m / self.film_m).sqrt().sqrt();
+        diameter_m * shape * times.sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::air::Air;
+    use crate::fall_speed::{FallSpeedModel, terminal_speed};
+
+    fn law() -> SplashLaw {
+        SplashLaw::new(FILM_M, 20.0).expect("a law")
+    }
+
+    fn falls(diameter: f64) -> f64 {
+        terminal_speed(FallSpeedModel::Beard1976, diameter, &Air::standard()).expect("a drop")
+    }
+
+    #[test]
+    fn drops_splash_from_seven_tenths_of_a_millimeter_on() {
+        // By hand from We and Re at terminal speed: K passes 57.7 at 0.69 mm.
+        for (diameter, splashes) in [(0.5e-3, false), (0.66e-3, false), (0.72e-3, true), (5.0e-3, true)] {
+            assert_eq!(law().splash(diameter, falls(diameter)).is_some(), splashes, "{diameter}");
+        }
+        assert!(law().splash(3.0e-3, -1.0).is_none());
+        assert!(law().splash(3.0e-3, 0.0).is_none());
+    }
+
+    #[test]
+    fn a_crown_has_the_radius_of_yarin_and_weiss() {
+        // d = 3 mm, h = 0.5 mm: (2/3 * 6)^(1/4) = 1.4142; u t / d = 9: sqrt 3; 3 mm * 1.4142 * 3 = 12.73 mm.
+        let radius = law().radius(3.0e-3, 8.0, 9.0 * 3.0e-3 / 8.0);
+        assert!((radius - 12.728e-3).abs() < 1.0e-6, "{radius}");
+        let splash = law().splash(3.0e-3, 8.0).expect("it splashes");
+        assert!((splash.radius_m - 14.697e-3).abs() < 1.0e-6, "{splash:?}");
+        assert!((0.030..0.040).contains(&splash.duration_s), "{splash:?}");
+    }
+
+    #[test]
+    fn films_have_limits() {
+        for film in [0.0, 0.04e-3, 0.011, f64::NAN] {
+            assert!(SplashLaw::new(film, 20.0).is_err(), "{film}");
+        }
+        assert!(SplashLaw::new(FILM_M, 60.0).is_err());
+    }
+}

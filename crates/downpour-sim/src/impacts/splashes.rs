@@ -1,0 +1,114 @@
+//! Crowns of the splashes of impacts.
+
+use downpour_drop::splash::{Splash, SplashLaw, crown};
+use downpour_math::in_range;
+use downpour_math::rng::{rng_draw, rng_unit};
+
+use super::{Impact, Surfaces};
+use crate::SimError;
+use crate::falling::{DropKind, FallingDrop};
+use crate::field::{Class, RainField, check_time};
+use crate::shelter::Obstacles;
+use crate::view::{Bounds, View, within};
+
+/// Dimension of the random numbers of splashes.
+const SIZE: u32 = 8204;
+
+/// Difference between the id of a drop and that of its splash.
+const SPLASH: u64 = 0x6a09_e667_f3bc_c909;
+
+/// Range of the random size of a splash, relative to the law.
+const SIZES: [f64; 2] = [0.75, 1.25];
+
+/// Crowns are drawn from this width on the picture on, in pixels: below, they are no more than the texture of the ground.
+const LEAST_PIXELS: f64 = 1.5;
+
+/// Least vertical component of the normal of a surface on which crowns stand: on steeper ones a drop spreads downhill.
+const LEVEL: f32 = 0.8;
+
+/// Longest duration of a crown, s: those of the largest drops at terminal speed take half of it.
+const LONGEST_S: f64 = 0.08;
+
+/// Largest number of crowns of a picture.
+const MOST: usize = 65_536;
+
+/// Splashes of a rain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SplashOptions {
+    /// Size, duration and threshold.
+    pub law: SplashLaw,
+    /// Factor of the size of crowns: 1 is that of the law.
+    pub size: f64,
+}
+
+impl RainField {
+    /// Crowns of splashes that a picture shows at a time in seconds: of drops that have hit a surface that is not steep, from 1.5
+    /// pixels wide on. They stand where the drop hit until they have fallen back; what moves under them meanwhile leaves them. Of more
+    /// than 65 536 those of the smallest drops are left out.
+    ///
+    /// # Errors
+    /// [`SimError::OutOfRange`] for an invalid view or size (0.1 to 10), or a time beyond
+    /// [`MAX_TIME_S`](crate::field::MAX_TIME_S).
+    pub fn splashes(
+        &self,
+        obstacles: &Obstacles<'_>,
+        view: &View,
+        time_s: f64,
+        options: &SplashOptions,
+    ) -> Result<Vec<FallingDrop>, SimError> {
+        view.check()?;
+        check_time(time_s)?;
+        in_range("size of splashes", options.size, "", &(0.1..=10.0), 1.0, "0.1 to 10")?;
+        let sides = view.sides();
+        let bounds = |class: &Class| {
+            // The wind adds to the speed of a drop toward a slope.
+            let speed = class.speeds[1] + self.wind.velocity(time_s).length();
+            let radius = options.law.splash(class.largest, speed)?.radius_m * options.size * SIZES[1];
+            let range = view.range(2.0 * radius, LEAST_PIXELS);
+            let in_picture = move |place: &Bounds| {
+                let offset = place.low.midpoint(place.high) - view.eye;
+                let reach = 0.5 * (place.high - place.low).length() + radius;
+                offset.length() - reach <= range && within(&sides, offset, reach)
+            };
+            (range >= view.near).then(|| (view.bounds(range, radius), in_picture))
+        };
+        let impacts =
+            self.impacts_of(&Surfaces::new(obstacles), [time_s - LONGEST_S, time_s], bounds, |_| true)?;
+        let mut crowns: Vec<FallingDrop> =
+            impacts.iter().filter_map(|impact| options.crown(impact, view, time_s)).collect();
+        if crowns.len() > MOST {
+            crowns.sort_by(|a, b| b.diameter.total_cmp(&a.diameter).then(a.id.cmp(&b.id)));
+            crowns.truncate(MOST);
+        }
+        Ok(crowns)
+    }
+}
+
+impl SplashOptions {
+    /// Crown of an impact at a time in s, if there is one and the picture shows it.
+    fn crown(&self, impact: &Impact, view: &View, time_s: f64) -> Option<FallingDrop> {
+        let age_s = time_s - impact.time_s;
+        let toward = -f64::from(impact.velocity.dot(impact.normal));
+        let Splash { radius_m, duration_s } = self.law.splash(impact.diameter.into(), toward)?;
+        let duration_s = duration_s.min(LONGEST_S);
+        if impact.normal.y < LEVEL || !(0.0..duration_s).contains(&age_s) {
+            return None;
+        }
+        let [chance, ..] = rng_draw([impact.id as u32, (impact.id >> 32) as u32], 0, 0, SIZE).map(rng_unit);
+        let random = SIZES[0] + (SIZES[1] - SIZES[0]) * f64::from(chance);
+        let radius = radius_m * self.size * random;
+        let position = impact.position + glam::DVec3::Y * (radius * crown::middle(age_s / duration_s));
+        let range = view.range(2.0 * radius, LEAST_PIXELS);
+        let offset = position - view.eye;
+        // The mask reaches beyond the largest radius, to the droplets of the rim.
+        let shown = offset.length() < range && within(&view.sides(), offset, 1.5 * radius);
+        shown.then(|| FallingDrop {
+            position,
+            velocity: [0.0; 3],
+            diameter: (2.0 * radius) as f32,
+            id: impact.id ^ SPLASH,
+            kind: DropKind::Splash,
+            present_s: [-age_s, duration_s - age_s].map(|time| time as f32),
+        })
+    }
+}

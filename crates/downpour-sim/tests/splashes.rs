@@ -1,0 +1,135 @@
+//! Crowns of splashes: their number, their positions, and that any time can be asked for.
+
+use std::collections::BTreeMap;
+
+use downpour_bvh::Bvh;
+use downpour_drop::air::Air;
+use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
+use downpour_drop::fall_speed::{FallSpeedModel, terminal_speed};
+use downpour_drop::splash::{FILM_M, SplashLaw};
+use downpour_sim::field::{DropKind, FallingDrop, RainField};
+use downpour_sim::impacts::SplashOptions;
+use downpour_sim::shelter::Obstacles;
+use downpour_sim::view::View;
+use glam::DVec3;
+
+fn law() -> DropSizeDistribution {
+    DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 50.0).expect("in range")
+}
+
+fn quad([a, b, c, d]: [[f32; 3]; 4]) -> [[[f32; 3]; 3]; 2] {
+    [[a, b, c], [a, c, d]]
+}
+
+fn at(height: f32, low: [f32; 2], high: [f32; 2]) -> [[[f32; 3]; 3]; 2] {
+    quad([
+        [low[0], height, low[1]],
+        [low[0], height, high[1]],
+        [high[0], height, high[1]],
+        [high[0], height, low[1]],
+    ])
+}
+
+/// Level ground, with a roof of 1 x 1 m over one corner of what the view shows.
+fn yard() -> Bvh {
+    Bvh::new(&[at(0.0, [-9.0, -9.0], [9.0, 9.0]), at(0.5, [0.0, 0.0], [1.0, 1.0])].concat())
+}
+
+/// From 3 m above the ground straight down on 2 x 2 m of it, by pixels of 0.5 mm.
+fn view() -> View {
+    View {
+        eye: DVec3::new(0.0, 3.0, 0.0),
+        right: DVec3::X,
+        up: DVec3::NEG_Z,
+        forward: DVec3::NEG_Y,
+        half_width: 1.0 / 3.0,
+        half_height: 1.0 / 3.0,
+        pixel_angle: 0.5e-3 / 3.0,
+        ..View::default()
+    }
+}
+
+fn splashes(bvh: &Bvh, time_s: f64) -> Vec<FallingDrop> {
+    let obstacles =
+        Obstacles { nodes: &bvh.nodes, triangles: &bvh.triangles, holes: None, origin: DVec3::ZERO };
+    let options = SplashOptions { law: SplashLaw::new(FILM_M, 20.0).expect("a law"), size: 1.0 };
+    let rain = RainField::new(&law(), 5).expect("in range");
+    rain.splashes(&obstacles, &view(), time_s, &options).expect("in range")
+}
+
+/// As many as the flux of the drops that splash, times how long each of them lasts.
+#[test]
+fn there_are_as_many_as_drops_that_hit() {
+    let bvh = yard();
+    let speed = |d: f64| terminal_speed(FallSpeedModel::Beard1976, d, &Air::standard()).expect("a drop");
+    // K = 57.7 at 0.69 mm; twelve diameters over the speed are an eighth of the time. Some of the smallest are narrower than the
+    // least width on the picture, 0.75 mm: none here.
+    let steps = 4000;
+    let mean: f64 = (0..steps)
+        .map(|k| {
+            let d = 0.69e-3 + (8.0e-3 - 0.69e-3) * (f64::from(k) + 0.5) / f64::from(steps);
+            let lasts = 8.0 * 12.0 * d / speed(d);
+            law().concentration(d) * speed(d) * lasts * (8.0e-3 - 0.69e-3) / f64::from(steps)
+        })
+        .sum();
+    let (mut found, times) = (0, 40);
+    for k in 0..times {
+        let crowns = splashes(&bvh, 1.0 + 0.5 * f64::from(k));
+        // Not below the roof, and not at the edge of the picture.
+        let inside = |p: DVec3| p.x.abs() < 0.95 && p.z.abs() < 0.95 && (p.x < -0.05 || p.z < -0.05);
+        found += crowns.iter().filter(|crown| inside(crown.position)).count();
+    }
+    // 1.9 x 1.9 m but for 1.0 x 1.0 m less the margin.
+    let expected = mean * f64::from(times) * (1.9 * 1.9 - 1.0);
+    let apart = (found as f64 - expected) / expected.sqrt();
+    assert!(expected > 1000.0 && apart.abs() < 4.0, "{found} crowns, not {expected}");
+}
+
+#[test]
+fn none_is_under_a_roof_and_all_are_on_a_surface() {
+    let bvh = yard();
+    let mut on_roof = 0;
+    for k in 0..20 {
+        for crown in splashes(&bvh, 3.0 + 0.7 * f64::from(k)) {
+            let p = crown.position;
+            assert_eq!(crown.kind, DropKind::Splash);
+            let radius = f64::from(0.5 * crown.diameter);
+            let is_above = p.x > 0.0 && p.x < 1.0 && p.z > 0.0 && p.z < 1.0;
+            let foot = if is_above { 0.5 } else { 0.0 };
+            on_roof += u32::from(is_above);
+            assert!((0.0..0.5 * radius).contains(&(p.y - foot)), "{crown:?}");
+            assert!((1.0e-3..0.05).contains(&radius), "{crown:?}");
+        }
+    }
+    assert!(on_roof > 20, "{on_roof}");
+}
+
+/// A crown is the same whenever it is asked for: it stands in its place, and grows and ends as its age says.
+#[test]
+fn a_crown_is_the_same_at_all_times() {
+    let bvh = yard();
+    let (first, later_s) = (7.2, 4.0e-3);
+    let before: BTreeMap<u64, FallingDrop> = splashes(&bvh, first).iter().map(|c| (c.id, *c)).collect();
+    let after = splashes(&bvh, first + later_s);
+    let mut both = 0;
+    for crown in &after {
+        let Some(was) = before.get(&crown.id) else {
+            assert!(f64::from(-crown.present_s[0]) < later_s + 1.0e-6, "{crown:?}");
+            continue;
+        };
+        both += 1;
+        assert_eq!(crown.diameter, was.diameter);
+        assert!(crown.position.with_y(0.0).distance(was.position.with_y(0.0)) < 1.0e-5);
+        for (now, then) in crown.present_s.iter().zip(was.present_s) {
+            assert!((f64::from(now - then) + later_s).abs() < 1.0e-6, "{crown:?} {was:?}");
+        }
+    }
+    assert!(both > 20, "{both} of {}", after.len());
+}
+
+#[test]
+fn there_are_none_on_a_steep_surface() {
+    let wall = quad([[-9.0, 9.0, -9.0], [-9.0, -9.0, 9.0], [9.0, -9.0, 9.0], [9.0, 9.0, -9.0]]);
+    assert!(splashes(&Bvh::new(&wall), 2.0).is_empty());
+    assert!(splashes(&Bvh::new(&[]), 2.0).is_empty());
+}
