@@ -12,6 +12,7 @@
 //! view: x right, y up, z toward the viewer.
 
 mod closed_mesh;
+mod crown;
 mod drop;
 mod error;
 pub mod file;

@@ -137,6 +137,11 @@ fn drops_is_splash(drop: DropsDrop) -> bool {
     return drop.mask_index.x >= f32(PROJECT_DIAMETERS);
 }
 
+// The light of lamps on a part of a splash, over that of a sphere: what is bent as little as by a sheet of water stays where it is.
+fn drops_bent(direction: vec3f) -> f32 {
+    return min(dot(direction.xy, direction.xy) * DROPS_BENT, DROPS_BENT_MOST);
+}
+
 // A still drop over a pixel: radiance times coverage, and coverage. Below a pixel it is its mean radiance.
 fn drops_still(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
     let small = drop.grid == 0u;
@@ -166,9 +171,12 @@ fn drops_still(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
             var shown = drops_shade_ray(DropsShade(drop.towards, drop.half_extent, lean, spacing, drop.mask_index), sx, sy);
             if !small {
                 let at = vec2f(sx, sy) * drop.half_extent;
-                // Lamps shine on a splash as on so many small drops: no glint has its place on it.
-                var light = drops_light[drops_light_row(index)].rgb;
-                if !drops_is_splash(drop) {
+                var light: vec3f;
+                if drops_is_splash(drop) {
+                    // Lamps shine on its rims as on so many small drops: no glint has its place on it.
+                    let bends = drops_bent(drops_mask_at(drop.mask_index, sx, sy).direction);
+                    light = drops_light[drops_light_row(index)].rgb * bends;
+                } else {
                     light = drops_spots(index, at, drops_glint_width(drop)) + drops_facing(index, drop, sx, sy);
                 }
                 shown += vec4f(light * shown.w, 0.0);

@@ -17,10 +17,10 @@ use super::RISE_SHARE;
 const FINGERS: u32 = 13;
 
 /// Steps around the wall.
-const AROUND: u32 = 234;
+const AROUND: u32 = 130;
 
 /// Points of the outline of the wall's section.
-const SECTION: u32 = 40;
+const SECTION: u32 = 18;
 
 /// Heights of the wall and of the fingers above it, at most.
 const HEIGHTS: [f64; 2] = [0.42, 0.34];

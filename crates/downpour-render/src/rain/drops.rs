@@ -5,8 +5,8 @@ use downpour_math::ops;
 use downpour_shaders::render::drop_light::DROP_ATLAS_ROWS;
 use downpour_shaders::render::medium::{MEDIUM_SKY, MEDIUM_SKY_REACH};
 use downpour_shaders::render::rain::{
-    DROPS_ATLAS_TAPS, DROPS_GLINT, DROPS_LINE, DROPS_OPAQUE, DROPS_SMALL_GRID, DROPS_STILL, DROPS_TABLE,
-    PROJECT_DIAMETERS, STREAK_FINE, STREAK_GOLDEN, STREAK_LATTICE, STREAK_WHITE,
+    DROPS_ATLAS_TAPS, DROPS_BENT, DROPS_BENT_MOST, DROPS_GLINT, DROPS_LINE, DROPS_OPAQUE, DROPS_SMALL_GRID,
+    DROPS_STILL, DROPS_TABLE, PROJECT_DIAMETERS, STREAK_FINE, STREAK_GOLDEN, STREAK_LATTICE, STREAK_WHITE,
 };
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
@@ -55,6 +55,13 @@ pub fn drops_turns(drop: &DropsDrop, way: f32) -> f32 {
 #[must_use]
 pub fn drops_is_splash(drop: &DropsDrop) -> bool {
     drop.mask_index[0] >= PROJECT_DIAMETERS as f32
+}
+
+/// The light of lamps on a part of a splash, over that of a sphere: what is bent as little as by a sheet of water stays where it is.
+#[must_use]
+pub fn drops_bent(direction: Vec3) -> f32 {
+    let square = direction.x * direction.x + direction.y * direction.y;
+    (square * DROPS_BENT).min(DROPS_BENT_MOST)
 }
 
 /// Data that the kernel reads.
@@ -222,12 +229,14 @@ impl Buffers<'_> {
                 let mut shown = self.view.drops_shade_ray(&shade, sx, sy);
                 if !small {
                     let at = Vec2::new(sx, sy) * drop.half_extent;
-                    // Lamps shine on a splash as on so many small drops: no glint has its place on it.
-                    let mut light = Vec4::from(self.drops_light_row(index)[0]).truncate();
-                    if !drops_is_splash(drop) {
+                    let light = if drops_is_splash(drop) {
+                        // Lamps shine on its rims as on so many small drops: no glint has its place on it.
+                        let bends = drops_bent(self.view.drops_mask_at(drop.mask_index, sx, sy).direction);
+                        Vec4::from(self.drops_light_row(index)[0]).truncate() * bends
+                    } else {
                         let spots = self.drops_spots(index, at, self.drops_glint_width(drop));
-                        light = spots + self.drops_facing(index, drop, sx, sy);
-                    }
+                        spots + self.drops_facing(index, drop, sx, sy)
+                    };
                     shown += (light * shown.w).extend(0.0);
                 }
                 sum += shown;

@@ -1,13 +1,12 @@
 //! Masks of splashes: their crowns at stages, seen from elevations.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
-use downpour_drop::splash::crown;
 use downpour_mask::{ClosedMesh, Mask, MaskError, View, trace_model_views};
 use downpour_shaders::render::rain::{
     DROPS_ELEVATIONS, PROJECT_SPLASH_RISE, PROJECT_SPLASH_TOP, PROJECT_SPLASHES,
 };
-use std::sync::Arc;
+use rayon::prelude::*;
 
 use super::masks::options;
 
@@ -33,8 +32,8 @@ pub(super) fn masks(refractive_index: f64) -> Result<SplashMasks, MaskError> {
     let views = (0..DROPS_ELEVATIONS)
         .map(|k| View::from_elevation(f64::from(k) / above * std::f64::consts::FRAC_PI_2))
         .collect::<Result<Vec<View>, _>>()?;
-    let masks = (0..PROJECT_SPLASHES).map(|row| {
-        let mesh = centered(stage(f64::from(row)))?;
+    let masks = (0..PROJECT_SPLASHES).into_par_iter().map(|row| {
+        let mesh = ClosedMesh::crown(stage(f64::from(row)))?;
         trace_model_views(&mesh, &options(View::SIDE, refractive_index), &views)
     });
     let masks = Arc::new(masks.collect::<Result<Vec<_>, _>>()?);
@@ -51,24 +50,32 @@ fn stage(row: f64) -> f64 {
     rise + (1.0 - rise) * (row - top) / (f64::from(PROJECT_SPLASHES - 1) - top)
 }
 
-/// The crown at a stage about the middle of its height, in its largest radii.
-fn centered(stage: f64) -> Result<ClosedMesh, MaskError> {
-    let crown = crown::mesh(stage);
-    let closed = ClosedMesh::new(&crown.positions, None, &crown.triangles)?;
-    let middle = crown::middle(stage) as f32;
-    let positions = crown.positions.iter().map(|[x, y, z]| [*x, y - middle, *z]).collect();
-    Ok(ClosedMesh { positions, ..closed })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use downpour_math::ops::f64 as ops;
+    use glam::Vec3;
 
     #[test]
     fn rows_are_stages_in_order() {
         let stages: Vec<f64> = (0..PROJECT_SPLASHES).map(|row| stage(f64::from(row))).collect();
         assert!(stages.is_sorted() && stages[0] == 0.0 && stages.last() == Some(&1.0), "{stages:?}");
         assert_eq!(stages[3], 0.125);
+    }
+
+    /// The light of a lamp that a splash shows where it bends light as a sphere does, over the outline of a sphere: by Snell's law.
+    #[test]
+    fn a_sphere_shows_as_much_light_as_its_mean() {
+        use crate::rain::drops::drops_bent;
+        let steps = 4000;
+        let of = |k: u32| {
+            let across = ((f64::from(k) + 0.5) / f64::from(steps)).sqrt();
+            let bends = 2.0 * (ops::asin(across) - ops::asin(across / 1.333));
+            f64::from(drops_bent(Vec3::new(ops::sin(bends) as f32, 0.0, -ops::cos(bends) as f32)))
+        };
+        let mean = (0..steps).map(of).sum::<f64>() / f64::from(steps);
+        assert!((mean - 1.0).abs() < 0.05, "{mean}");
+        assert_eq!(drops_bent(Vec3::NEG_Z), 0.0);
     }
 
     #[test]
