@@ -35,6 +35,14 @@ pub struct MeshPart<'a> {
     pub material: u32,
 }
 
+impl<'a> MeshPart<'a> {
+    /// A mesh of positions and triangles alone.
+    #[must_use]
+    pub fn plain(positions: &'a [[f32; 3]], indices: &'a [u32], material: u32) -> Self {
+        Self { positions, normals: None, tangents: None, uvs: [None; 2], colors: None, indices, material }
+    }
+}
+
 /// Builder of a [`SceneData`].
 #[derive(Clone, Debug, Default)]
 pub struct SceneBuilder {

@@ -182,6 +182,7 @@ impl SceneData {
 
     /// Sets the emission of all materials to 0, and unlit ones, which show their base color by no light, to black.
     pub(crate) fn remove_emission(&mut self) {
+        self.emitters = 0;
         let (materials, _) = self.table[..self.slots as usize].as_chunks_mut::<MATERIAL_ROWS>();
         for [base, glow, _, state, ..] in materials {
             glow[..3].fill(0);

@@ -77,7 +77,7 @@ fn row_area(j: u32, height: u32) -> f32 {
 }
 
 /// The direction of the middle of a texel.
-fn direction_of(x: u32, y: u32, width: u32, height: u32) -> Vec3 {
+pub(crate) fn direction_of(x: u32, y: u32, width: u32, height: u32) -> Vec3 {
     let phi = std::f32::consts::TAU * ((x as f32 + 0.5) / width as f32 - 0.5);
     let elevation = std::f32::consts::PI * (0.5 - (y as f32 + 0.5) / height as f32);
     let r = ops::cos(elevation);

@@ -69,7 +69,7 @@ pub fn surface_porosity(own: f32, flags: u32, roughness: f32, metallic: f32) -> 
 }
 
 impl SceneData {
-    pub(crate) fn corners_of(&self, hit: &Hit) -> &[RenderCorner] {
+    fn corners_of(&self, hit: &Hit) -> &[RenderCorner] {
         let first = hit.triangle as usize * 3;
         &self.corners[first..first + 3]
     }

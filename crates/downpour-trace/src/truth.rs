@@ -25,6 +25,7 @@ impl SceneView<'_> {
     #[must_use]
     pub fn truth(&self, motion: &EyeMotion) -> Vec<SurfaceTruth> {
         let camera = &self.frame.camera;
+        let load = self.data.wet_load();
         let pixel = |(y, x): (u32, u32)| {
             let direction = camera.camera_direction(x as f32 + 0.5, y as f32 + 0.5);
             let hit = self.data.surface_hit(camera.eye, direction, self.frame.nearest, BVH_FAR);
@@ -34,8 +35,7 @@ impl SceneView<'_> {
                 return SurfaceTruth { wetness: 0.0, water_depth: 0.0, motion: self.pace(direction, turned) };
             };
             let found = self.data.surface_at(&hit, camera.eye, direction, camera.pixel_angle);
-            let wetness =
-                if self.frame.wetness > 0 { self.wet_exposure(&found, &self.data.wet_load()) } else { 0.0 };
+            let wetness = if self.frame.wetness > 0 { self.wet_exposure(&found, &load) } else { 0.0 };
             let water_depth =
                 self.puddle_water_find(found.position, found.facet.y).map_or(0.0, |water| water.depth);
             let offset = direction * hit.distance;
@@ -79,15 +79,7 @@ mod tests {
         let material = builder.add_material(MaterialLook::default());
         let positions =
             [[-50.0, -50.0, -10.0], [50.0, -50.0, -10.0], [50.0, 0.0, -10.0], [-50.0, 0.0, -10.0]];
-        let part = MeshPart {
-            positions: &positions,
-            normals: None,
-            tangents: None,
-            uvs: [None, None],
-            colors: None,
-            indices: &[0, 1, 2, 0, 2, 3],
-            material,
-        };
+        let part = MeshPart::plain(&positions, &[0, 1, 2, 0, 2, 3], material);
         builder.add_mesh(&part, &Affine3A::IDENTITY);
         let scene = builder.build(&SkyLight::uniform([1.0; 3]));
         let view = Viewpoint {

@@ -136,12 +136,8 @@ fn filling(weather: &Weather, seepage: f64, time_s: f64) -> Filling {
     let Some([before, lost, since]) = weather.wetness.runoff(&weather.rain, time_s) else {
         return Filling::Fraction(1.0);
     };
-    let time_s = time_s.max(0.0);
-    let (dried_s, rained_s) = if weather.rain.rate_mm_h > 0.0 {
-        (weather.wetness.dried_s, time_s)
-    } else {
-        (weather.wetness.dried_s + time_s, 0.0)
-    };
+    let dried_s = weather.wetness.rained_at(&weather.rain, time_s).dried_s;
+    let rained_s = if weather.rain.rate_mm_h > 0.0 { time_s.max(0.0) } else { 0.0 };
     let stepped = |depth: f64| ((depth / STEP_M).floor() * STEP_M) as f32;
     Filling::Rain {
         before_m: before as f32,

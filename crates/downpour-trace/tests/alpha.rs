@@ -27,13 +27,8 @@ fn roofed(flags: u32, alphas: [u8; 2]) -> SceneData {
         let positions = corners.map(|(x, z)| [x * half, height, z * half]);
         let uvs = corners.map(|(x, z)| [0.5 + 0.5 * x, 0.5 + 0.5 * z]);
         let part = MeshPart {
-            positions: &positions,
-            normals: None,
-            tangents: None,
             uvs: [Some(&uvs), None],
-            colors: None,
-            indices: &[0, 2, 1, 0, 3, 2],
-            material,
+            ..MeshPart::plain(&positions, &[0, 2, 1, 0, 3, 2], material)
         };
         builder.add_mesh(&part, &Affine3A::IDENTITY);
     }

@@ -38,15 +38,7 @@ fn rectangle(builder: &mut SceneBuilder, material: u32, middle: Vec3, half: [Vec
             [a, a + 1, a + edge + 1, a, a + edge + 1, a + edge]
         })
         .collect();
-    let part = MeshPart {
-        positions: &positions,
-        normals: None,
-        tangents: None,
-        uvs: [None, None],
-        colors: None,
-        indices: &indices,
-        material,
-    };
+    let part = MeshPart::plain(&positions, &indices, material);
     builder.add_mesh(&part, &Affine3A::IDENTITY);
 }
 

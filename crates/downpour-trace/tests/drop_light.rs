@@ -31,15 +31,7 @@ fn scene(lights: &[LightSource], wall: Option<Vec3>) -> SceneData {
     if let Some(at) = wall {
         // A square of 1 m that stands across z.
         let positions = [[-0.5, -0.5, 0.0], [0.5, -0.5, 0.0], [0.5, 0.5, 0.0], [-0.5, 0.5, 0.0]];
-        let part = MeshPart {
-            positions: &positions,
-            normals: None,
-            tangents: None,
-            uvs: [None, None],
-            colors: None,
-            indices: &[0, 1, 2, 0, 2, 3],
-            material: 0,
-        };
+        let part = MeshPart::plain(&positions, &[0, 1, 2, 0, 2, 3], 0);
         builder.add_mesh(&part, &Affine3A::from_translation(at));
     }
     builder.build(&SkyLight::new(16, 8, &[[0.0; 3]; 16 * 8]))

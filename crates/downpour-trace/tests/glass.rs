@@ -356,15 +356,7 @@ fn lamps_throw_the_shadows_of_drops_on_a_sill() -> Outcome {
     let mut builder = SceneBuilder::new();
     let white = builder.add_material(MaterialLook::default());
     let positions = [[-0.1, 1.36, -0.49], [0.1, 1.36, -0.49], [0.1, 1.36, -0.3], [-0.1, 1.36, -0.3]];
-    let part = MeshPart {
-        positions: &positions,
-        normals: None,
-        tangents: None,
-        uvs: [None, None],
-        colors: None,
-        indices: &[0, 2, 1, 0, 3, 2],
-        material: white,
-    };
+    let part = MeshPart::plain(&positions, &[0, 2, 1, 0, 3, 2], white);
     builder.add_mesh(&part, &Affine3A::IDENTITY);
     let lamp = Vec3::new(0.0, 1.5, -1.5);
     builder.add_light(LightSource::Point {

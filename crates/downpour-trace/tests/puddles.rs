@@ -33,15 +33,7 @@ fn sheet(builder: &mut SceneBuilder, material: u32, n: usize, height: impl Fn(Ve
             [a, c, b, a, d, c]
         })
         .collect();
-    let part = MeshPart {
-        positions: &positions,
-        normals: None,
-        tangents: None,
-        uvs: [None, None],
-        colors: None,
-        indices: &indices,
-        material,
-    };
+    let part = MeshPart::plain(&positions, &indices, material);
     builder.add_mesh(&part, &Affine3A::IDENTITY);
 }
 

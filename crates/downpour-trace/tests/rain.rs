@@ -182,17 +182,8 @@ fn the_image_in_a_drop_is_upside_down() -> Outcome {
 fn the_scene_hides_drops_behind_it() -> Outcome {
     let mut builder = SceneBuilder::new();
     let corners = [[-5.0, -5.0, -2.0], [5.0, -5.0, -2.0], [0.0, 9.0, -2.0]];
-    let (normals, uvs, colors) = (None, [None, None], None);
     let indices = [0, 1, 2];
-    let wall = MeshPart {
-        positions: &corners,
-        normals,
-        tangents: None,
-        uvs,
-        colors,
-        indices: &indices,
-        material: 0,
-    };
+    let wall = MeshPart::plain(&corners, &indices, 0);
     builder.add_mesh(&wall, &Affine3A::IDENTITY);
     let scene = builder.build(&SkyLight::uniform([1.0; 3]));
     let near = drop_at(DVec3::new(0.01, 0.0, -1.9), 1.0e-3);

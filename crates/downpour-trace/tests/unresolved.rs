@@ -137,15 +137,7 @@ fn add(builder: &mut SceneBuilder, corners: &[[f32; 3]; 4]) {
     let black =
         downpour_trace::material::MaterialLook { base_color: [0.0, 0.0, 0.0, 1.0], ..Default::default() };
     let material = builder.add_material(black);
-    let part = MeshPart {
-        positions: corners,
-        normals: None,
-        tangents: None,
-        uvs: [None, None],
-        colors: None,
-        indices: &[0, 1, 2, 0, 2, 3],
-        material,
-    };
+    let part = MeshPart::plain(corners, &[0, 1, 2, 0, 2, 3], material);
     builder.add_mesh(&part, &Affine3A::IDENTITY);
 }
 

@@ -34,15 +34,7 @@ fn look(albedo: f32, roughness: f32, porosity: f32) -> MaterialLook {
 fn square(builder: &mut SceneBuilder, material: u32, middle: Vec3, across: Vec3, along: Vec3) {
     let positions = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
         .map(|(x, y)| (middle + across * x + along * y).to_array());
-    let part = MeshPart {
-        positions: &positions,
-        normals: None,
-        tangents: None,
-        uvs: [None, None],
-        colors: None,
-        indices: &[0, 1, 2, 0, 2, 3],
-        material,
-    };
+    let part = MeshPart::plain(&positions, &[0, 1, 2, 0, 2, 3], material);
     builder.add_mesh(&part, &Affine3A::IDENTITY);
 }
 

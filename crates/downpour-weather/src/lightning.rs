@@ -169,9 +169,3 @@ impl Lightning {
         found
     }
 }
-
-/// Unit direction of an azimuth and an elevation in radians: azimuth 0 is +X, 90 degrees is +Z.
-fn towards(azimuth: f64, elevation: f64) -> [f64; 3] {
-    let flat = ops::cos(elevation);
-    [flat * ops::cos(azimuth), ops::sin(elevation), flat * ops::sin(azimuth)]
-}

@@ -153,16 +153,20 @@ impl SunSource {
     }
 }
 
+/// Unit direction of an azimuth and an elevation in radians: azimuth 0 is +X, 90 degrees is +Z.
+pub(super) fn towards(azimuth: f64, elevation: f64) -> [f64; 3] {
+    let flat = ops::cos(elevation);
+    [flat * ops::cos(azimuth), ops::sin(elevation), flat * ops::sin(azimuth)]
+}
+
 impl SunTable {
     fn directional(&self, positions: &Positions<'_>) -> Result<SunSource, SceneError> {
         let (Some(azimuth), Some(elevation)) = (self.azimuth_deg, self.elevation_deg) else {
             let missing = if self.azimuth_deg.is_none() { "azimuth_deg" } else { "elevation_deg" };
             return Err(positions.bad("sun", format!("no {missing}"), "both azimuth_deg and elevation_deg"));
         };
-        let (azimuth, elevation) = (azimuth.0.to_radians(), elevation.0.to_radians());
-        let flat = ops::cos(elevation);
         Ok(SunSource::Directional {
-            towards: [flat * ops::cos(azimuth), ops::sin(elevation), flat * ops::sin(azimuth)],
+            towards: towards(azimuth.0.to_radians(), elevation.0.to_radians()),
             illuminance_lux: self.illuminance_lux.map_or(SUN_LUX, |lux| lux.0),
             color: self.color.map_or([1.0; 3], Exactly::numbers),
             angular_radius: self.diameter_deg.map_or(SUN_DEG, |diameter| diameter.0).to_radians() / 2.0,

@@ -58,6 +58,17 @@ pub struct WetnessAt {
     pub since: f64,
 }
 
+/// What has fallen until a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RainedAt {
+    /// Depth of the rain before the time in which nothing fell, m.
+    pub before_m: f64,
+    /// Time in which nothing fell, s.
+    pub dried_s: f64,
+    /// Depth of the rain after it, m.
+    pub since_m: f64,
+}
+
 impl WetnessAt {
     /// Wetness of a level surface under the open sky.
     #[must_use]
@@ -79,15 +90,11 @@ impl Wetness {
             WetnessAt { before: -downpour_math::ops::f64::ln(rest), kept: 1.0, since: 0.0 }
         } else {
             let wetting = Wetting::new(self.storage_m, self.drying_s).unwrap_or_default();
-            let rate_m_s = rain.rate_mm_h * 1.0e-3 / 3600.0;
-            let rained_m = self.rained_m.unwrap_or(rate_m_s * RAINED_S);
-            let time_s = time_s.max(0.0);
-            // It rains from time 0 on, or it dries on.
-            let dried_s = if rate_m_s > 0.0 { self.dried_s } else { self.dried_s + time_s };
+            let RainedAt { before_m, dried_s, since_m } = self.rained_at(rain, time_s);
             WetnessAt {
-                before: wetting.dose(rained_m),
+                before: wetting.dose(before_m),
                 kept: wetting.kept(dried_s),
-                since: wetting.dose(rate_m_s * time_s),
+                since: wetting.dose(since_m),
             }
         };
         (found.level() > 0.0).then_some(found)
@@ -100,19 +107,26 @@ impl Wetness {
         if !self.is_enabled || self.fixed.is_some() {
             return None;
         }
-        let rate_m_s = rain.rate_mm_h * 1.0e-3 / 3600.0;
-        let rained_m = self.rained_m.unwrap_or(rate_m_s * RAINED_S);
-        let time_s = time_s.max(0.0);
-        let (dried_s, since_m) =
-            if rate_m_s > 0.0 { (self.dried_s, rate_m_s * time_s) } else { (self.dried_s + time_s, 0.0) };
+        let RainedAt { before_m, dried_s, since_m } = self.rained_at(rain, time_s);
         // What the ground stores first does not run off; dry ground stores it anew.
         let dry = 1.0 - Wetting::new(self.storage_m, self.drying_s).unwrap_or_default().kept(dried_s);
         let left = |fallen: f64, stored: f64| (fallen - stored).max(0.0);
         Some([
-            left(rained_m, self.storage_m),
+            left(before_m, self.storage_m),
             self.storage_m / self.drying_s * dried_s,
             left(since_m, self.storage_m * dry),
         ])
+    }
+
+    /// What has fallen until a time in s, and for how long nothing has.
+    #[must_use]
+    pub fn rained_at(&self, rain: &Rain, time_s: f64) -> RainedAt {
+        let rate_m_s = rain.rate_mm_h * 1.0e-3 / 3600.0;
+        let before_m = self.rained_m.unwrap_or(rate_m_s * RAINED_S);
+        let time_s = time_s.max(0.0);
+        // It rains from time 0 on, or it dries on.
+        let dried_s = if rate_m_s > 0.0 { self.dried_s } else { self.dried_s + time_s };
+        RainedAt { before_m, dried_s, since_m: rate_m_s * time_s }
     }
 
     pub(super) fn checked(

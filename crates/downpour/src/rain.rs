@@ -336,15 +336,7 @@ fn scene_of(triangles: &[[[f32; 3]; 3]]) -> Result<SceneData, RainError> {
     }
     let positions: Vec<[f32; 3]> = triangles.iter().flatten().copied().collect();
     let indices: Vec<u32> = (0..positions.len() as u32).collect();
-    let part = MeshPart {
-        positions: &positions,
-        normals: None,
-        tangents: None,
-        uvs: [None; 2],
-        colors: None,
-        indices: &indices,
-        material: 0,
-    };
+    let part = MeshPart::plain(&positions, &indices, 0);
     let mut builder = SceneBuilder::new();
     builder.add_mesh(&part, &Affine3A::IDENTITY);
     Ok(builder.build(&SkyLight::uniform([0.0; 3])))

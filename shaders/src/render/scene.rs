@@ -73,8 +73,16 @@ shared_constants! {
         LIGHT_LARGEST_SPREAD: f32 = 1.5;
         /// Rays toward a lamp with a size that gives much.
         SCENE_LAMP_RAYS: u32 = 2;
-        /// Bits of their numbers.
-        SCENE_LAMP_BITS: u32 = 1;
+        /// Fraction of a disk's area for each step of a reversed number: 2^-32.
+        SCENE_LAMP_STEP: f32 = 2.3283064e-10;
+        /// Factors by which further digits of a random number become numbers of their own.
+        SCENE_DIGIT: f32 = 61.0;
+        /// See `SCENE_DIGIT`.
+        SCENE_OTHER_DIGIT: f32 = 3571.0;
+        /// Steps of the plane's lattice of least gaps: powers of 0.7548777, the inverse of the plastic number.
+        SCENE_LATTICE: f32 = 0.7548777;
+        /// See `SCENE_LATTICE`.
+        SCENE_OTHER_LATTICE: f32 = 0.5698403;
         /// Part of what all lamps would give from which one has as many rays; others have one.
         SCENE_LARGE_LAMP: f32 = 0.25;
         /// Part of the way to a lamp where things are taken to stand that throw its shadows.

@@ -268,12 +268,23 @@ fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
     return sum / max(sum.w, 1.0);
 }
 
+// Position on the plane at distance 1 through a drop's center, along the right and up of its view, of a place on the picture.
+fn drops_position(drop: DropsDrop, x: f32, y: f32) -> vec2f {
+    let right = drops_mask_right(drop.towards);
+    let lean = drops_on_plane(drop.towards, camera_ray(drops_frame.camera, x, y));
+    return vec2f(dot(lean, right), dot(lean, cross(right, drop.towards)));
+}
+
+// The part of a drop at a depth that is before a scene, 0 to 1: one that meets a surface goes into it over its own size; a splash
+// stands on one, which hides it only from behind.
+fn drops_before(drop: DropsDrop, scene: f32, depth: f32) -> f32 {
+    let sunk = (scene - depth) / (2.0 * drop.slope * drop.distance);
+    return clamp(sunk + select(0.5, 1.5, drops_is_splash(drop)), 0.0, 1.0);
+}
+
 // The depth of a drop before a pixel, m.
 fn drops_depth(drop: DropsDrop, x: u32, y: u32) -> f32 {
-    let right = drops_mask_right(drop.towards);
-    let up = cross(right, drop.towards);
-    let lean = drops_on_plane(drop.towards, camera_ray(drops_frame.camera, f32(x) + 0.5, f32(y) + 0.5));
-    let way = streak_nearest(drop, vec2f(dot(lean, right), dot(lean, up)));
+    let way = streak_nearest(drop, drops_position(drop, f32(x) + 0.5, f32(y) + 0.5));
     return drop.distance * streak_depth(drop.depth_ratio, streak_time(drop.depth_ratio, way));
 }
 
@@ -292,10 +303,7 @@ fn drops_pixel(index: u32, x: u32, y: u32, scene: f32) -> vec4f {
     if drops_frame.streak_color == STREAK_WHITE {
         shown = vec4f(drops_capture_texel(drops_frame.capture_last, 0, 0) * shown.w, shown.w);
     }
-    // A drop that meets a surface goes into it over its own size; a splash stands on one, which hides it only from behind.
-    let sunk = (scene - drops_depth(drop, x, y)) / (2.0 * drop.slope * drop.distance);
-    let before = sunk + select(0.5, 1.5, drops_is_splash(drop));
-    return shown * clamp(before, 0.0, 1.0);
+    return shown * drops_before(drop, scene, drops_depth(drop, x, y));
 }
 
 // Mean radiance of an unresolved drop before a pixel.

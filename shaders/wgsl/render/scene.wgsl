@@ -118,6 +118,9 @@ fn scene_lamp(surface: Surface, view: vec3f, light: SceneArrival, out: vec3f, se
     if dot(surface.facet, light.direction) <= 0.0 {
         return vec3f(0.0);
     }
+    if seen {
+        return surface.diffuse * scene_glow(surface, view, light, out);
+    }
     let alpha = scene_alpha(surface.roughness, light.spread, dot(surface.normal, view));
     var base = surface.diffuse * light.diffuse;
     var under = vec3f(0.0);
@@ -125,12 +128,6 @@ fn scene_lamp(surface: Surface, view: vec3f, light: SceneArrival, out: vec3f, se
         let cosine = max(dot(surface.normal, light.direction), 0.0);
         under = base * out * wet_in(surface, cosine) * (surface.film * cosine);
         base *= 1.0 - surface.film;
-    }
-    if seen {
-        let sum = view + light.direction;
-        let halfway = sum / max(sqrt(dot(sum, sum)), BRDF_MIN_DIVISOR);
-        let fresnel = brdf_fresnel(surface.normal_reflectance, clamp(dot(view, halfway), 0.0, 1.0));
-        return light.irradiance * (under + (vec3f(1.0) - fresnel) * base * max(dot(surface.normal, light.direction), 0.0));
     }
     return light.irradiance * (under + brdf_direct(
         base, surface.normal_reflectance, alpha, surface.normal, view, light.direction,
@@ -217,9 +214,9 @@ fn scene_shadow(light: SceneArrival, numbers: vec2f, rays: u32) -> vec4f {
 
 // Place k on a unit disk.
 fn scene_disk(numbers: vec2f, k: u32) -> vec2f {
-    let inverse = f32(reverseBits(k) >> (32u - SCENE_LAMP_BITS)) / f32(SCENE_LAMP_RAYS);
+    let inverse = f32(reverseBits(k)) * SCENE_LAMP_STEP;
     let radius = sqrt(fract(numbers.x + inverse));
-    let angle = 6.2831853 * (numbers.y + 0.5 * f32(k) + 0.25 * f32(k / 2u));
+    let angle = 6.2831853 * (numbers.y + 0.5 * f32(k));
     return vec2f(radius * cos(angle), radius * sin(angle));
 }
 
@@ -305,8 +302,8 @@ fn scene_direct(
             continue;
         }
         // Each lamp has places of its own; they come from other digits of the number that draws a lamp.
-        let digits = fract(numbers.w * vec2f(61.0, 3571.0));
-        let place_numbers = fract(digits + f32(index) * vec2f(0.7548777, 0.5698403));
+        let digits = fract(numbers.w * vec2f(SCENE_DIGIT, SCENE_OTHER_DIGIT));
+        let place_numbers = fract(digits + f32(index) * vec2f(SCENE_LATTICE, SCENE_OTHER_LATTICE));
         // One ray to a lamp that gives little: its noise is little, too.
         let is_large = soft > 0.0 && soft < 1.0 && arrival.spread > 0.0 && fraction > total * SCENE_LARGE_LAMP;
         // What is narrower than some pixels is the edge of a point's shadow: it would be noise.

@@ -123,13 +123,8 @@ fn obstacles(has_holes: bool) -> SceneData {
         let corner = |x, z| [x, height, z];
         let positions = [corner(left, far), corner(right, far), corner(right, near), corner(left, near)];
         let part = MeshPart {
-            positions: &positions,
-            normals: None,
-            tangents: None,
             uvs: [Some(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), None],
-            colors: None,
-            indices: &[0, 1, 2, 0, 2, 3],
-            material,
+            ..MeshPart::plain(&positions, &[0, 1, 2, 0, 2, 3], material)
         };
         builder.add_mesh(&part, &Affine3A::IDENTITY);
     };

@@ -111,15 +111,7 @@ fn bank() -> (SceneData, PuddleMap) {
     let positions = [corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)];
     let mut builder = SceneBuilder::new();
     let material = builder.add_material(MaterialLook { roughness: 0.7, ..MaterialLook::default() });
-    let part = MeshPart {
-        positions: &positions,
-        normals: None,
-        tangents: None,
-        uvs: [None, None],
-        colors: None,
-        indices: &[0, 1, 2, 0, 2, 3],
-        material,
-    };
+    let part = MeshPart::plain(&positions, &[0, 1, 2, 0, 2, 3], material);
     builder.add_mesh(&part, &Affine3A::IDENTITY);
     builder.add_light(LightSource::Directional {
         direction: Vec3::new(0.4, -0.8, -0.45).normalize(),

@@ -317,13 +317,9 @@ fn scene_that(shines: bool) -> SceneData {
     let indices: Vec<u32> = (0..6).flat_map(|f| [0, 1, 2, 0, 2, 3].map(|k| 4 * f + k)).collect();
     let mut add = |material: u32, at: Vec3, size: Vec3| {
         let part = MeshPart {
-            positions: &positions,
-            normals: None,
             tangents: Some(&tangents),
             uvs: [Some(&uvs), None],
-            colors: None,
-            indices: &indices,
-            material,
+            ..MeshPart::plain(&positions, &indices, material)
         };
         builder.add_mesh(&part, &(Affine3A::from_translation(at) * Affine3A::from_scale(size)));
     };

@@ -24,6 +24,7 @@ use super::streak::{
 use super::streak_lookup::StreakTable;
 use super::tiles::TileLists;
 use super::{DropMasks, Rain, StreakProfiles, StreakRay, streak_light, streak_rays};
+use crate::camera::Camera;
 use crate::halves::unpack;
 
 /// Position of a ray on the plane at distance 1 through a drop's center.
@@ -55,6 +56,27 @@ pub fn drops_turns(drop: &DropsDrop, way: f32) -> f32 {
 #[must_use]
 pub fn drops_is_splash(drop: &DropsDrop) -> bool {
     drop.mask_index[0] >= PROJECT_DIAMETERS as f32
+}
+
+/// Position on the plane at distance 1 through a drop's center, along the right and up of its view, of a place on the picture.
+pub(super) fn drops_position(camera: &Camera, drop: &DropsDrop, x: f32, y: f32) -> Vec2 {
+    let towards = Vec3::from(drop.towards);
+    let right = drops_mask_right(towards);
+    let lean = drops_on_plane(towards, camera.camera_ray(x, y));
+    Vec2::new(lean.dot(right), lean.dot(right.cross(towards)))
+}
+
+/// The depth of a drop before a pixel, m.
+pub(super) fn drops_depth(camera: &Camera, drop: &DropsDrop, x: u32, y: u32) -> f32 {
+    let way = streak_nearest(drop, drops_position(camera, drop, x as f32 + 0.5, y as f32 + 0.5));
+    drop.distance * streak_depth(drop.depth_ratio, streak_time(drop.depth_ratio, way))
+}
+
+/// The part of a drop at a depth that is before a scene, 0 to 1: one that meets a surface goes into it over its own size; a splash
+/// stands on one, which hides it only from behind.
+pub(super) fn drops_before(drop: &DropsDrop, scene: f32, depth: f32) -> f32 {
+    let sunk = (scene - depth) / (2.0 * drop.slope * drop.distance);
+    (sunk + if drops_is_splash(drop) { 1.5 } else { 0.5 }).clamp(0.0, 1.0)
 }
 
 /// The light of lamps on a part of a splash, over that of a sphere: what is bent as little as by a sheet of water stays where it is.
@@ -322,16 +344,6 @@ impl Buffers<'_> {
         sum / sum.w.max(1.0)
     }
 
-    /// The depth of a drop before a pixel, m.
-    fn drops_depth(&self, drop: &DropsDrop, x: u32, y: u32) -> f32 {
-        let towards = Vec3::from(drop.towards);
-        let right = drops_mask_right(towards);
-        let up = right.cross(towards);
-        let lean = drops_on_plane(towards, self.view.frame.camera.camera_ray(x as f32 + 0.5, y as f32 + 0.5));
-        let way = streak_nearest(drop, Vec2::new(lean.dot(right), lean.dot(up)));
-        drop.distance * streak_depth(drop.depth_ratio, streak_time(drop.depth_ratio, way))
-    }
-
     /// A drop over a pixel whose scene is `scene` meters away: radiance times coverage, and coverage.
     fn drops_pixel(&self, index: u32, x: u32, y: u32, scene: f32) -> Vec4 {
         let drop = &self.rain.list[index as usize];
@@ -347,10 +359,7 @@ impl Buffers<'_> {
             let white = self.view.drops_capture_texel(self.view.frame.capture_last, 0, 0);
             shown = (white * shown.w).extend(shown.w);
         }
-        // A drop that meets a surface goes into it over its own size; a splash stands on one, which hides it only from behind.
-        let sunk = (scene - self.drops_depth(drop, x, y)) / (2.0 * drop.slope * drop.distance);
-        let before = sunk + if drops_is_splash(drop) { 1.5 } else { 0.5 };
-        shown * before.clamp(0.0, 1.0)
+        shown * drops_before(drop, scene, drops_depth(&self.view.frame.camera, drop, x, y))
     }
 
     /// Mean radiance of an unresolved drop before a pixel.

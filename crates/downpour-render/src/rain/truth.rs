@@ -1,13 +1,12 @@
 //! The drop that each pixel shows most of, for those who need to know it.
 
 use downpour_shaders::render::rain::{DROPS_OPAQUE, DROPS_STILL};
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 use rayon::prelude::*;
 
 use super::Rain;
-use super::drops::drops_on_plane;
-use super::drops_mask::drops_mask_right;
-use super::streak::{DropsDrop, streak_chord, streak_cover, streak_depth, streak_nearest, streak_time};
+use super::drops::{drops_before, drops_depth, drops_position};
+use super::streak::{DropsDrop, streak_chord, streak_cover};
 use super::tiles::TileLists;
 
 /// Samples along an edge of a pixel, of drops that are not smaller.
@@ -39,10 +38,8 @@ impl Rain {
                 if drop.nearest >= scene || left < DROPS_OPAQUE {
                     break;
                 }
-                let distance = self.distance(drop, x, y);
-                // A drop that meets a surface goes into it over its own size.
-                let before = ((scene - distance) / (2.0 * drop.slope * drop.distance) + 0.5).clamp(0.0, 1.0);
-                let alpha = self.cover(drop, x, y) * before * left;
+                let distance = drops_depth(&self.frame.camera, drop, x, y);
+                let alpha = self.cover(drop, x, y) * drops_before(drop, scene, distance) * left;
                 if alpha > most.map_or(0.0, |most| most.alpha) {
                     most = Some(DropTruth { drop: self.given[index as usize], distance, alpha });
                 }
@@ -60,7 +57,8 @@ impl Rain {
         }
         let sample = |k: u32| {
             let at = |k: u32| (k as f32 + 0.5) / GRID as f32;
-            let position = self.position(drop, x as f32 + at(k % GRID), y as f32 + at(k / GRID));
+            let position =
+                drops_position(&self.frame.camera, drop, x as f32 + at(k % GRID), y as f32 + at(k / GRID));
             if drop.kind == DROPS_STILL {
                 let [half_width, half_height, up] = drop.oval;
                 let from = Vec2::new(position.x, position.y - up * drop.slope) / drop.slope;
@@ -71,19 +69,5 @@ impl Rain {
             if chord.high > chord.low { chord.fraction * (chord.high - chord.low) * 0.5 } else { 0.0 }
         };
         ((0..GRID * GRID).map(sample).sum::<f32>() / (GRID * GRID) as f32).clamp(0.0, 1.0)
-    }
-
-    /// Distance of a drop before a pixel, m.
-    fn distance(&self, drop: &DropsDrop, x: u32, y: u32) -> f32 {
-        let way = streak_nearest(drop, self.position(drop, x as f32 + 0.5, y as f32 + 0.5));
-        drop.distance * streak_depth(drop.depth_ratio, streak_time(drop.depth_ratio, way))
-    }
-
-    /// Position on the plane at distance 1 through a drop's center, along the right and up of its view.
-    fn position(&self, drop: &DropsDrop, x: f32, y: f32) -> Vec2 {
-        let towards = Vec3::from(drop.towards);
-        let right = drops_mask_right(towards);
-        let lean = drops_on_plane(towards, self.frame.camera.camera_ray(x, y));
-        Vec2::new(lean.dot(right), lean.dot(right.cross(towards)))
     }
 }

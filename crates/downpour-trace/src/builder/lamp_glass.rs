@@ -11,12 +11,20 @@ const REACH_M: f32 = 0.5;
 /// Maximum area of a triangle of a lamp's glass, m^2: a larger one is a sign or a window.
 const LARGEST_M2: f32 = 0.25;
 
-/// Position and intensity of a lamp that is not parallel.
-fn lamp(light: &LightSource) -> Option<(Vec3, f32)> {
+/// A lamp that is not parallel.
+struct Lamp {
+    position: Vec3,
+    radius: f32,
+    intensity: f32,
+}
+
+/// The lamp of a light, unless that is parallel.
+fn lamp(light: &LightSource) -> Option<Lamp> {
     match *light {
         LightSource::Directional { .. } => None,
-        LightSource::Point { position, intensity, .. } | LightSource::Spot { position, intensity, .. } => {
-            Some((position, light_weight(intensity)))
+        LightSource::Point { position, radius, intensity, .. }
+        | LightSource::Spot { position, radius, intensity, .. } => {
+            Some(Lamp { position, radius, intensity: light_weight(intensity) })
         }
     }
 }
@@ -30,7 +38,7 @@ pub(super) fn owners(
     // Sorted, so that a scene of many lamps and many lit windows takes no time.
     let mut lamps: Vec<(f32, usize, Vec3)> = (0..)
         .zip(lights)
-        .filter_map(|(index, light)| lamp(light).map(|(position, _)| (position.x, index, position)))
+        .filter_map(|(index, light)| lamp(light).map(|lamp| (lamp.position.x, index, lamp.position)))
         .collect();
     lamps.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let owner = |&triangle: &usize| {
@@ -55,14 +63,10 @@ pub(super) fn owners(
 /// the glass's area, since the light of a spot is not all from where its glass seems to shine. `glass`: mean emission and area of
 /// its parts. `None` if the light has a radius of its own.
 pub(super) fn radius(light: &LightSource, glass: &[(Vec3, f32)]) -> Option<f32> {
-    let own = match *light {
-        LightSource::Point { radius, .. } | LightSource::Spot { radius, .. } => radius,
-        LightSource::Directional { .. } => 0.0,
-    };
+    let Lamp { radius: own, intensity, .. } = lamp(light)?;
     if own > 0.0 {
         return None;
     }
-    let (_, intensity) = lamp(light)?;
     let area: f32 = glass.iter().map(|part| part.1).sum();
     let emission: f32 = glass.iter().map(|part| light_weight(part.0) * part.1).sum::<f32>() / area;
     let radius = (intensity / (std::f32::consts::PI * emission)).sqrt();

@@ -10,9 +10,10 @@ use downpour_shaders::bvh::BVH_FAR;
 use downpour_shaders::render::brdf::{BRDF_GRAZING, BRDF_MIN_DIVISOR};
 use downpour_shaders::render::puddle_water::{PUDDLE_WATER_INDEX, PUDDLE_WATER_OUTSIDE};
 use downpour_shaders::render::scene::{
-    SCENE_BLENDED, SCENE_FAR, SCENE_LAMP_BITS, SCENE_LAMP_GLASS, SCENE_LAMP_RAYS, SCENE_LARGE_LAMP,
-    SCENE_LAYERS, SCENE_LIGHT_AREA, SCENE_LIGHT_BODY, SCENE_MIN_COSINE, SCENE_MIN_LAMP, SCENE_MIN_ROUGHNESS,
-    SCENE_PICTURE, SCENE_SAME_SHADOW, SCENE_SEEN_BODY, SCENE_SHADOW_M, SCENE_SHADOW_PART, SCENE_SHARP_PIXELS,
+    SCENE_BLENDED, SCENE_DIGIT, SCENE_FAR, SCENE_LAMP_GLASS, SCENE_LAMP_RAYS, SCENE_LAMP_STEP,
+    SCENE_LARGE_LAMP, SCENE_LATTICE, SCENE_LAYERS, SCENE_LIGHT_AREA, SCENE_LIGHT_BODY, SCENE_MIN_COSINE,
+    SCENE_MIN_LAMP, SCENE_MIN_ROUGHNESS, SCENE_OTHER_DIGIT, SCENE_OTHER_LATTICE, SCENE_PICTURE,
+    SCENE_SAME_SHADOW, SCENE_SEEN_BODY, SCENE_SHADOW_M, SCENE_SHADOW_PART, SCENE_SHARP_PIXELS,
     SCENE_SPOT_GLASS,
 };
 use glam::{Vec2, Vec3};
@@ -162,6 +163,9 @@ impl SceneView<'_> {
         if surface.facet.dot(light.direction) <= 0.0 {
             return Vec3::ZERO;
         }
+        if seen {
+            return surface.diffuse * self.scene_glow(surface, view, light, out);
+        }
         let alpha = scene_alpha(surface.roughness, light.spread, surface.normal.dot(view));
         let (diffuse, normal_reflectance) = (surface.diffuse * light.diffuse, surface.normal_reflectance);
         let (mut base, mut under) = (diffuse, Vec3::ZERO);
@@ -169,13 +173,6 @@ impl SceneView<'_> {
             let cosine = surface.normal.dot(light.direction).max(0.0);
             under = base * out * self.data.wet_in(surface, cosine) * (surface.film * cosine);
             base *= 1.0 - surface.film;
-        }
-        if seen {
-            let sum = view + light.direction;
-            let halfway = sum / sum.dot(sum).sqrt().max(BRDF_MIN_DIVISOR);
-            let fresnel = brdf_fresnel(normal_reflectance, view.dot(halfway).clamp(0.0, 1.0));
-            let cosine = surface.normal.dot(light.direction).max(0.0);
-            return light.irradiance * (under + (Vec3::ONE - fresnel) * base * cosine);
         }
         light.irradiance
             * (under + brdf_direct(base, normal_reflectance, alpha, surface.normal, view, light.direction))
@@ -316,7 +313,7 @@ impl SceneView<'_> {
                 continue;
             }
             // Each lamp has places of its own; they come from other digits of the number that draws a lamp.
-            let place_numbers = [(61.0, 0.754_877_7), (3571.0, 0.569_840_3)]
+            let place_numbers = [(SCENE_DIGIT, SCENE_LATTICE), (SCENE_OTHER_DIGIT, SCENE_OTHER_LATTICE)]
                 .map(|(digits, turn)| ((numbers[3] * digits).fract() + index as f32 * turn).fract());
             // One ray to a lamp that gives little: its noise is little, too.
             let is_large =
@@ -363,9 +360,9 @@ pub fn scene_alpha(roughness: f32, spread: f32, cosine_view: f32) -> f32 {
 /// Place `k` on a unit disk.
 #[must_use]
 pub fn scene_disk(numbers: [f32; 2], k: u32) -> Vec2 {
-    let inverse = (k.reverse_bits() >> (32 - SCENE_LAMP_BITS)) as f32 / SCENE_LAMP_RAYS as f32;
+    let inverse = k.reverse_bits() as f32 * SCENE_LAMP_STEP;
     let radius = (numbers[0] + inverse).fract().sqrt();
-    let angle = TAU * (numbers[1] + 0.5 * k as f32 + 0.25 * (k / 2) as f32);
+    let angle = TAU * (numbers[1] + 0.5 * k as f32);
     Vec2::new(radius * ops::cos(angle), radius * ops::sin(angle))
 }
 

@@ -12,7 +12,7 @@ use downpour_weather::{FlashLight, Weather};
 use glam::{DVec3, Vec2, Vec3};
 
 use super::Stage;
-use crate::sky_light::SkyLight;
+use crate::sky_light::{SkyLight, direction_of};
 use crate::wet::SceneWetness;
 
 /// Columns and rows of the map of the lit clouds.
@@ -52,7 +52,6 @@ impl Stage {
         let sky = lit_clouds(flashes);
         let data = &mut stage.data;
         data.remove_emission();
-        data.emitters = 0;
         data.set_lights(&lights);
         data.set_wetness(SceneWetness::of(weather, time_s, self.origin).as_ref());
         data.sky = Arc::new(sky.texels);
@@ -96,15 +95,12 @@ fn lit_clouds(flashes: &[FlashLight]) -> SkyLight {
 fn billows() -> &'static [(Vec3, f32, f32)] {
     static BILLOWED: OnceLock<Vec<(Vec3, f32, f32)>> = OnceLock::new();
     BILLOWED.get_or_init(|| {
-        let pi = std::f32::consts::PI;
-        let edge = pi / HEIGHT as f32;
+        let edge = std::f32::consts::PI / HEIGHT as f32;
         (0..HEIGHT / 2 * WIDTH)
             .map(|k| {
-                let elevation = (0.5 * HEIGHT as f32 - (k / WIDTH) as f32 - 0.5) * edge;
-                let azimuth = ((k % WIDTH) as f32 + 0.5 - 0.5 * WIDTH as f32) * edge;
-                let (flat, up) = (ops::cos(elevation), ops::sin(elevation));
-                let along = Vec3::new(flat * ops::cos(azimuth), up, flat * ops::sin(azimuth));
-                (along, billow(along), edge * edge * flat * up)
+                let along = direction_of(k % WIDTH, k / WIDTH, WIDTH, HEIGHT);
+                let flat = Vec2::new(along.x, along.z).length();
+                (along, billow(along), edge * edge * flat * along.y)
             })
             .collect()
     })

@@ -4,7 +4,8 @@ use downpour_math::ops::f64 as ops;
 use downpour_math::rng::{rng_draw, rng_unit, rng_unit_positive, seed_words};
 
 use super::stroke::DARK_AFTER;
-use super::{Flash, Stroke, towards};
+use super::{Flash, Stroke};
+use crate::sky::towards;
 
 /// Luminous energy of a first stroke over the full angle, cd s: 3.7e5 J of light between 0.4 and 1.1 um
 /// (Guo & Krider 1982) of 100 lm/W, in all directions.

@@ -1,11 +1,12 @@
 //! `[[flash]]` and `[lightning]`.
 
-use super::{Flash, Lightning, MAX_STROKES, MAX_STROKES_PER_SECOND, Storm, Stroke, towards};
+use super::{Flash, Lightning, MAX_STROKES, MAX_STROKES_PER_SECOND, Storm, Stroke};
 use crate::fault::Positions;
 use crate::quantity::{
     Clouds, ElevationDeg, Exactly, FlashM, FlashMs, FlashesPerMinute, In, KeyTimeS, Lux, RiseMs, Scale,
     StrokeKey, Tint, TurnDeg,
 };
+use crate::sky::towards;
 use downpour_scene::error::SceneError;
 use serde::Deserialize;
 
