@@ -12,7 +12,6 @@ mod storm;
 mod stroke;
 mod tables;
 
-use downpour_math::ops::f64 as ops;
 
 pub use exposure::{FlashExposure, FlashLight};
 pub use storm::Storm;

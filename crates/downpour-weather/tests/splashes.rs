@@ -1,0 +1,33 @@
+//! `[splashes]` of the weather file.
+
+use downpour_weather::{Splashes, Weather};
+
+fn parsed(text: &str) -> Splashes {
+    Weather::parse("rain.toml", text).expect("a weather").splashes
+}
+
+fn says(text: &str, expected: &str) {
+    let message = Weather::parse("rain.toml", text).expect_err(text).to_string();
+    assert!(message.contains(expected), "{text}: {message}");
+}
+
+#[test]
+fn drops_splash_unless_told_otherwise() {
+    let default = parsed("");
+    assert!(default.is_enabled);
+    assert_eq!((default.size, default.film_m), (1.0, 0.5e-3));
+    assert!(!parsed("[splashes]\nenabled = false").is_enabled);
+    let given = parsed("[splashes]\nsize = 2\nfilm_mm = 0.25");
+    assert_eq!((given.size, given.film_m), (2.0, 0.25e-3));
+}
+
+#[test]
+fn bad_splashes_are_refused() {
+    says("[splashes]\nsize = 0", "splashes.size: 0; allowed: 0.1 to 10");
+    says("[splashes]\nsize = 11", "0.1 to 10");
+    says("[splashes]\nfilm_mm = 0.01", "0.05 to 10 mm");
+    says("[splashes]\nfilm_mm = nan", "splashes.film_mm");
+    says("[splashes]\nsizes = 1", "unknown key \"sizes\", perhaps size");
+    says("[splashes]\nenabled = false\nsize = 2", "splashes.size: beside enabled = false");
+    says("[splashes]\nenabled = 1", "splashes.enabled");
+}
