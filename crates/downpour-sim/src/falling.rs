@@ -14,6 +14,8 @@ pub enum DropKind {
     Falling,
     /// Rebounds from a surface that another drop hit.
     Bounced,
+    /// Hangs at an edge, or falls from it.
+    Dripped,
 }
 
 impl DropKind {
@@ -23,6 +25,7 @@ impl DropKind {
         match self {
             Self::Falling => "falling",
             Self::Bounced => "bounced",
+            Self::Dripped => "dripped",
         }
     }
 }
