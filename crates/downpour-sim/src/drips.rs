@@ -43,14 +43,14 @@ mod points;
 mod runoff;
 mod surfaces;
 
-use downpour_drop::drip::Drip;
+use downpour_drop::drip::{Drip, MAX_DRIPPING_PER_S};
 use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_wind::UniformWind;
 use glam::DVec3;
 use rayon::prelude::*;
 
-pub use clock::DripRain;
 use clock::Clock;
+pub use clock::DripRain;
 use emitter::{Emitter, Query};
 use facets::Facets;
 use fall::MAX_FALL_S;
@@ -75,7 +75,7 @@ const MIN_PER_S: f64 = 1.0 / 900.0;
 pub struct SetDrip {
     /// Position, m.
     pub position: DVec3,
-    /// Drops per second.
+    /// Drops per second; above [`MAX_DRIPPING_PER_S`] they come from a jet.
     pub per_s: f64,
     /// Diameter of the drops, m.
     pub diameter_m: f64,
@@ -128,7 +128,8 @@ impl Drips {
         for drip in set {
             let size = Drip::of_diameter(drip.diameter_m, options.temperature_c)?;
             let clock = Clock::steady(drip.per_s.max(0.0), -2.0e6);
-            emitters.extend(Emitter::new(drip.position, size, drip.per_s, clock, options)?);
+            let emitter = Emitter::new(drip.position, size, drip.per_s, clock, options)?;
+            emitters.extend(emitter.map(|emitter| emitter.with_jet(drip.per_s > MAX_DRIPPING_PER_S)));
         }
         let wanted = found.len() + set.len();
         emitters.par_iter_mut().for_each(|emitter| emitter.land(obstacles, &facets, &options.wind));

@@ -1,5 +1,6 @@
 //! Raw file: tables of keys with units, before they become a [`Weather`].
 
+use super::drips::{DripTable, Drips, DripsTable};
 use super::fault::Positions;
 use super::glass::GlassTable;
 use super::lamps::{Lamp, LampTable};
@@ -12,7 +13,7 @@ use super::sky::{Sky, SkyTable, SunSource, SunTable};
 use super::streaks::StreaksTable;
 use super::wetness::{Wetness, WetnessTable};
 use super::wind::{self, GustsTable, TurbulenceTable, WindFieldTable, WindTable};
-use super::{Camera, MAX_LIGHTS, MAX_MODELS, MAX_PUDDLES, Weather, camera::CameraTable};
+use super::{Camera, MAX_DRIPS, MAX_LIGHTS, MAX_MODELS, MAX_PUDDLES, Weather, camera::CameraTable};
 use downpour_scene::error::{SceneError, quoted};
 use downpour_scene::uri::{Address, RelativePath, check};
 use serde::Deserialize;
@@ -40,6 +41,8 @@ struct Tables {
     glass: Option<GlassTable>,
     puddle: Vec<PuddleTable>,
     wetness: WetnessTable,
+    drips: DripsTable,
+    drip: Vec<DripTable>,
     output: OutputTable,
 }
 
@@ -58,6 +61,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         ("light", tables.light.len(), MAX_LIGHTS),
         ("flash", tables.flash.len(), MAX_FLASHES),
         ("puddle", tables.puddle.len(), MAX_PUDDLES),
+        ("drip", tables.drip.len(), MAX_DRIPS),
         ("wind", tables.wind.len(), downpour_wind::WIND_PARTS),
     ] {
         if count > most {
@@ -74,6 +78,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
     Ok(Weather {
         name: String::new(),
         wetness: Wetness::checked(&tables.wetness, &rain, &positions)?,
+        drips: Drips::checked(&tables.drips, &tables.drip),
         lightning: Lightning::checked(&tables.lightning, &tables.flash, rain.seed, &positions)?,
         glass: tables.glass.map(|glass| glass.checked(&rain, &positions)).transpose()?,
         rain,

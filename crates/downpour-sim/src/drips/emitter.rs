@@ -1,5 +1,6 @@
 //! A point that drips: its drops at any time.
 
+use downpour_bvh::BvhNode;
 use downpour_drop::drip::{BROAD_RADIUS_M, Drip};
 use downpour_drop::fall_speed::time_of_fall;
 use downpour_math::rng::{rng_draw, rng_unit, seed_words};
@@ -113,13 +114,19 @@ impl Emitter {
         }))
     }
 
+    /// The same emitter, of drops from a jet or of drops that hang.
+    pub(super) fn with_jet(self, is_jet: bool) -> Self {
+        Self { is_jet, ..self }
+    }
+
     /// Finds how far its drops fall.
     pub(super) fn land(&mut self, obstacles: &Obstacles<'_>, facets: &Facets<'_>, wind: &UniformWind) {
         let fall = self.fall(wind, 0.0);
         self.landing = fall.landing(obstacles, facets, MAX_FALL_S);
-        let bottom = obstacles.nodes.first().map_or(0.0, |root| f64::from(root.low[1])) - 1.0;
-        let depth = self.position.y - obstacles.origin.y - bottom;
-        let to_bottom = time_of_fall(self.terminal, depth.max(0.0)).min(MAX_FALL_S);
+        let bottom = obstacles.nodes.first().filter(|_| !obstacles.triangles.is_empty());
+        let depth = |root: &BvhNode| self.position.y - obstacles.origin.y - f64::from(root.low[1]) + 1.0;
+        let to_bottom = bottom
+            .map_or(MAX_FALL_S, |root| time_of_fall(self.terminal, depth(root).max(0.0)).min(MAX_FALL_S));
         self.longest_s = match self.landing {
             Some(landing) if wind.is_steady() => landing.after_s,
             _ => to_bottom,
@@ -176,10 +183,10 @@ impl Emitter {
         u64::from(a) << 32 | u64::from(b)
     }
 
-    /// End of a fall that begins at a time, if it is before an age.
+    /// End of a fall; in an unsteady wind only if it is before an age.
     fn landing(&self, query: &Query<'_>, fall: &Fall<'_>, age_s: f64) -> Option<Landing> {
         if query.wind.is_steady() {
-            return self.landing.filter(|landing| landing.after_s <= age_s);
+            return self.landing;
         }
         fall.landing(query.obstacles, query.facets, age_s)
     }
@@ -255,7 +262,9 @@ impl Emitter {
             let fall = self.fall(query.wind, leaves);
             let Some(landing) = self.landing(query, &fall, end_s - leaves) else { continue };
             let time_s = leaves + landing.after_s;
-            let Some(normal) = landing.normal.filter(|_| time_s > begin_s && time_s <= end_s) else { continue };
+            let Some(normal) = landing.normal.filter(|_| time_s > begin_s && time_s <= end_s) else {
+                continue;
+            };
             let (position, velocity) = fall.at(landing.after_s);
             let (velocity, diameter) = (velocity.as_vec3(), self.diameter as f32);
             impacts.push(Impact { position, normal, velocity, diameter, id: self.id(drop), time_s });

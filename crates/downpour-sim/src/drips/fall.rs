@@ -61,7 +61,15 @@ impl<'a> Fall<'a> {
     }
 
     /// The end of the fall, if it is before an age in s.
-    pub(super) fn landing(&self, obstacles: &Obstacles<'_>, facets: &Facets<'_>, age_s: f64) -> Option<Landing> {
+    pub(super) fn landing(
+        &self,
+        obstacles: &Obstacles<'_>,
+        facets: &Facets<'_>,
+        age_s: f64,
+    ) -> Option<Landing> {
+        if obstacles.triangles.is_empty() {
+            return None;
+        }
         let mut from = self.start - obstacles.origin;
         let lowest = obstacles.nodes.first().map_or(f64::INFINITY, |root| f64::from(root.low[1])) - 1.0;
         let steps = (age_s.min(MAX_FALL_S) / FINE_S).ceil().max(0.0) as u32;

@@ -18,6 +18,9 @@ const MERGED_M: f64 = 0.02;
 /// Distance from the plane of a cell within which its surface is searched beside the middle, m.
 const PLANE_M: f32 = 0.03;
 
+/// Maximum number of cells beyond its own in which the edge of a cell is searched.
+const MAX_CELLS: u32 = 3;
+
 /// Number of halvings of the way from a cell to the next: an edge is found to 0.4 mm.
 const HALVINGS: u32 = 7;
 
@@ -167,23 +170,34 @@ impl Edges<'_> {
         let middle = Vec2::from(self.surfaces.middle(sheet.cell));
         let way = Vec2::new(outflow.way[0] as f32, outflow.way[1] as f32);
         let beside = way.perp() * aside;
-        let height_at = |along: f32| {
+        // Height of the surface at a distance along the way, if it goes on from another place of it.
+        let goes_on = |along: f32, [before, height]: [f32; 2]| {
             let offset = beside + way * along;
-            let plane = sheet.height_at(offset.x, offset.y);
-            self.top(middle + offset, plane)
+            let high = height.max(sheet.height_at(offset.x, offset.y)) + PLANE_M;
+            self.top(middle + offset, high, height, (along - before).abs())
         };
-        let (mut inside, mut outside) = (0.0, CELL_M as f32);
-        let mut height = height_at(inside)?;
-        if height_at(outside).is_some() {
-            return None;
+        let mut inside = 0.0;
+        let mut height = goes_on(inside, [0.0, sheet.height_at(beside.x, beside.y)])?;
+        let mut outside = CELL_M as f32;
+        // A curved surface ends later than its planes tell.
+        let mut cells = 1;
+        while let Some(found) = goes_on(outside, [inside, height]) {
+            if cells == MAX_CELLS {
+                return None;
+            }
+            cells += 1;
+            (inside, height) = (outside, found);
+            outside += CELL_M as f32;
         }
         for _ in 0..HALVINGS {
             let half = 0.5 * (inside + outside);
-            match height_at(half) {
+            match goes_on(half, [inside, height]) {
                 Some(found) => (inside, height) = (half, found),
                 None => outside = half,
             }
         }
+        // On the edge itself a ray may meet the underside alone.
+        height = goes_on(inside - INSET_M, [inside, height]).unwrap_or(height);
         let at = middle + beside + way * inside;
         let edge = Vec3::new(at.x, height, at.y);
         let outward = Vec3::new(outflow.normal[0], 0.0, outflow.normal[1]);
@@ -203,10 +217,15 @@ impl Edges<'_> {
         })
     }
 
-    /// Height of the surface near a height, m.
-    fn top(&self, at: Vec2, height: f32) -> Option<f32> {
-        let from = Vec3::new(at.x, height + PLANE_M, at.y);
-        met(self.obstacles, from, Vec3::NEG_Y, 2.0 * PLANE_M).map(|hit| from.y - hit.distance)
+    /// Height, m, of the first surface below a height `high`, if it goes on from a height at a distance: it is lower by no more than it
+    /// would descend by its own slope.
+    fn top(&self, at: Vec2, high: f32, height: f32, distance: f32) -> Option<f32> {
+        let from = Vec3::new(at.x, high, at.y);
+        let hit = met(self.obstacles, from, Vec3::NEG_Y, downpour_shaders::bvh::BVH_FAR)?;
+        let normal = self.facets.normal(&hit);
+        let slope = Vec2::new(normal.x, normal.z).length() / normal.y.abs().max(1.0e-3);
+        let found = from.y - hit.distance;
+        (height - found <= PLANE_M + 1.1 * slope * distance).then_some(found)
     }
 
     /// The lower rim of an edge, to which water runs before it drips, and true if the surface has no underside; `None` at a wall.
@@ -217,7 +236,7 @@ impl Edges<'_> {
             return None;
         }
         let inset = edge - outward * INSET_M;
-        let Some(underside) = self.underside(inset - Vec3::Y * 0.5e-3, f32::MAX) else {
+        let Some((underside, mut normal)) = self.underside(inset - Vec3::Y * 0.5e-3, f32::MAX) else {
             return Some((edge, true));
         };
         if edge.y - underside > MAX_EDGE_M {
@@ -226,19 +245,25 @@ impl Edges<'_> {
         let mut rim = Vec3::new(inset.x, underside, inset.z);
         // Water clings to an underside that descends, as that of a pipe.
         for _ in 0..MAX_STEPS {
-            let next = rim - outward * UNDER_M;
+            let across = Vec3::new(normal.x, 0.0, normal.z);
+            if across.length() < UNDER_SLOPE * -normal.y {
+                break;
+            }
+            let next = rim - across.normalize_or_zero() * UNDER_M;
             match self.underside(next + Vec3::Y * 0.5e-3, MAX_EDGE_M) {
-                Some(lower) if rim.y - lower > UNDER_SLOPE * UNDER_M => rim = Vec3 { y: lower, ..next },
+                Some((lower, turned)) if lower < rim.y => {
+                    (rim, normal) = (Vec3 { y: lower, ..next }, turned);
+                }
                 _ => break,
             }
         }
         Some((rim, false))
     }
 
-    /// Height of the underside below a point within a solid, m; `None` if the next surface below is a top.
-    fn underside(&self, from: Vec3, distance: f32) -> Option<f32> {
+    /// Height, m, and normal of the underside below a point within a solid; `None` if the next surface below is a top.
+    fn underside(&self, from: Vec3, distance: f32) -> Option<(f32, Vec3)> {
         let hit = met(self.obstacles, from, Vec3::NEG_Y, distance.min(downpour_shaders::bvh::BVH_FAR))?;
-        let is_top = self.facets.normal(&hit).y > 0.0;
-        (!is_top).then_some(from.y - hit.distance)
+        let normal = self.facets.normal(&hit);
+        (normal.y <= 0.0).then_some((from.y - hit.distance, normal))
     }
 }

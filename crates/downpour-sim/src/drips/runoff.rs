@@ -1,6 +1,6 @@
 //! Ways of the water over the surfaces of a region: into hollows, out of them, over edges.
 //!
-//! Water follows the steepest descent to one of eight cells. In hollows and on level ground it takes the way by which a flood from the
+//! Water follows the descent to one or two of eight cells. In hollows and on level ground it takes the way by which a flood from the
 //! edges has come (Priority-Flood: R. Barnes et al., Computers & Geosciences 62, 2014). Hollows that are deeper than [`MAX_POOL_M`] have
 //! a drain, as flat roofs and gutters do.
 //!
@@ -28,6 +28,9 @@ const ABOVE_M: f32 = 0.02;
 /// Slopes below this are level.
 const LEVEL: f32 = 2.0e-3;
 
+/// Slopes above this leave over an edge along their descent.
+const STEEP: f32 = 0.8;
+
 /// Minimum cosine between the descent and the outward normal of an edge for water to leave over it.
 const OUTWARD: f32 = 0.35;
 
@@ -40,6 +43,9 @@ const WAYS: [[i32; 2]; 8] = [[1, 0], [0, 1], [-1, 0], [0, -1], [1, 1], [-1, 1], 
 /// No surface.
 const NONE: u32 = u32::MAX;
 
+/// Surfaces that water goes to, and the fraction of it that each gets.
+type Descent = [(u32, f32); 2];
+
 /// Water that leaves over an edge.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Outflow {
@@ -50,7 +56,7 @@ pub(super) struct Outflow {
     /// Outward unit normal of the edge along X and Z.
     pub(super) normal: [f32; 2],
     /// Number of cells whose rain it is.
-    pub(super) cells: u32,
+    pub(super) cells: f32,
     /// Length of the longest way that it has come, m.
     pub(super) length: f32,
 }
@@ -80,8 +86,7 @@ pub(super) fn runoff(obstacles: &Obstacles<'_>, surfaces: &Surfaces) -> Runoff {
     let edges: Vec<u8> =
         surfaces.sheets.par_iter().map(|sheet| open_edges(obstacles, surfaces, sheet)).collect();
     let count = surfaces.sheets.len();
-    let mut routing =
-        Routing { surfaces, edges, spill: vec![f32::INFINITY; count], next: vec![NONE; count] };
+    let mut routing = Routing { surfaces, edges, spill: vec![f32::INFINITY; count], next: vec![NONE; count] };
     routing.flood();
     routing.gather()
 }
@@ -194,14 +199,20 @@ impl Routing<'_> {
             return None;
         }
         let sheet = self.surfaces.sheet(index);
-        let normal = self.normal(sheet);
         let steepness = (sheet.slope[0] * sheet.slope[0] + sheet.slope[1] * sheet.slope[1]).sqrt();
+        // Around steep surfaces the cells near an edge do not tell where it is.
+        let normal =
+            if steepness > STEEP { sheet.slope.map(|slope| -slope / steepness) } else { self.normal(sheet) };
         let outward = -(sheet.slope[0] * normal[0] + sheet.slope[1] * normal[1]);
         if stays && steepness > LEVEL && outward < OUTWARD * steepness {
             return None;
         }
-        let along = |k: usize| WAYS[k][0] as f32 * normal[0] + WAYS[k][1] as f32 * normal[1];
-        let open = (0..4).filter(|k| bits & (1 << k) != 0);
+        let dot = |k: usize, v: [f32; 2]| WAYS[k][0] as f32 * v[0] + WAYS[k][1] as f32 * v[1];
+        let along = |k: usize| if steepness > LEVEL { -dot(k, sheet.slope) } else { dot(k, normal) };
+        // What can stay on the surface does so where it would not descend over the edge.
+        let descends =
+            |k: &usize| !stays || steepness <= LEVEL || -dot(*k, sheet.slope) >= OUTWARD * steepness;
+        let open = (0..4).filter(|k| bits & (1 << k) != 0).filter(descends);
         let best = open.fold(None, |best: Option<usize>, k| match best {
             Some(known) if along(known) >= along(k) => best,
             _ => Some(k),
@@ -209,82 +220,105 @@ impl Routing<'_> {
         best.map(|k| (k, normal))
     }
 
-    /// The surface that the water of a surface descends to: the steepest way; `None` in hollows and on level ground.
-    fn descent(&self, index: u32) -> Option<u32> {
-        let surfaces = self.surfaces;
-        let sheet = surfaces.sheet(index);
-        let spill = self.spill[index as usize];
-        let mut best = None;
-        for way in WAYS {
-            let Some(beside) = surfaces.beside(sheet.cell, way) else { continue };
-            let Some(other) = continued(surfaces, sheet, beside, way) else { continue };
-            let distance = ((way[0] * way[0] + way[1] * way[1]) as f32).sqrt() * CELL_M as f32;
-            let slope = (sheet.height - surfaces.sheet(other).height) / distance;
-            // What the flood has not come to has a drain. Else the way out is lower: no water goes in circles.
-            let is_lower = self.next[other as usize] == NONE || self.spill[other as usize] < spill;
-            if slope > LEVEL && is_lower && best.is_none_or(|(most, _)| slope > most) {
-                best = Some((slope, other));
+    /// Surfaces that the water of a surface descends to, and the fraction that each gets; none in hollows and on level ground.
+    ///
+    /// The two neighbors next to the direction of the descent share it so that its mean has that direction (as the D-infinity of D. G.
+    /// Tarboton, Water Resources Research 33, 1997). Where they are not there or not lower, the steepest way has all.
+    fn descent(&self, index: u32) -> Descent {
+        let sheet = self.surfaces.sheet(index);
+        let [x, z] = sheet.slope.map(|slope| -slope);
+        let signs = [x, z].map(|k| if k < 0.0 { -1 } else { 1 });
+        let (axis, aside) = if x.abs() >= z.abs() { ([signs[0], 0], z / x) } else { ([0, signs[1]], x / z) };
+        let fraction = aside.abs();
+        if x.abs().max(z.abs()) > LEVEL {
+            let straight = self.lower(index, axis).filter(|_| fraction < 1.0);
+            let diagonal = self.lower(index, signs).filter(|_| fraction > 0.0);
+            match (straight, diagonal) {
+                (Some((_, a)), Some((_, b))) => return [(a, 1.0 - fraction), (b, fraction)],
+                (Some((_, a)), None) => return [(a, 1.0), (NONE, 0.0)],
+                (None, Some((_, b))) => return [(b, 1.0), (NONE, 0.0)],
+                (None, None) => {}
             }
         }
-        best.map(|(_, other)| other)
+        let all = WAYS.iter().filter_map(|&way| self.lower(index, way));
+        let steepest = all.fold(None, |best: Option<(f32, u32)>, found| match best {
+            Some(known) if known.0 >= found.0 => best,
+            _ => Some(found),
+        });
+        [(steepest.map_or(NONE, |(_, other)| other), 1.0), (NONE, 0.0)]
+    }
+
+    /// The surface that goes on a way, if it is lower, and the slope to it.
+    fn lower(&self, index: u32, way: [i32; 2]) -> Option<(f32, u32)> {
+        let surfaces = self.surfaces;
+        let sheet = surfaces.sheet(index);
+        let beside = surfaces.beside(sheet.cell, way)?;
+        let other = continued(surfaces, sheet, beside, way)?;
+        let distance = ((way[0] * way[0] + way[1] * way[1]) as f32).sqrt() * CELL_M as f32;
+        let slope = (sheet.height - surfaces.sheet(other).height) / distance;
+        // What the flood has not come to has a drain. Else the way out is lower: no water goes in circles.
+        let is_lower =
+            self.next[other as usize] == NONE || self.spill[other as usize] < self.spill[index as usize];
+        (slope > LEVEL && is_lower).then_some((slope, other))
     }
 
     /// Adds the rain up along its ways.
     fn gather(&self) -> Runoff {
         let surfaces = self.surfaces;
         let count = surfaces.sheets.len();
-        let way_of = |index: u32| -> (u32, Option<(usize, [f32; 2])>) {
+        let way_of = |index: u32| -> (Descent, Option<(usize, [f32; 2])>) {
+            let alone = |to: u32| [(to, 1.0), (NONE, 0.0)];
             let next = self.next[index as usize];
             if next == NONE {
-                return (NONE, None);
+                return (alone(NONE), None);
             }
             let sheet = surfaces.sheet(index);
             let floods = self.spill[index as usize] > sheet.height;
-            let descent = if floods { None } else { self.descent(index) };
-            if let Some((way, normal)) = self.leaves(index, descent.is_some()) {
+            let descent = if floods { alone(NONE) } else { self.descent(index) };
+            let stays = descent[0].0 != NONE;
+            if let Some((way, normal)) = self.leaves(index, stays) {
                 let landed = surfaces.beside(sheet.cell, WAYS[way]).and_then(|c| below(surfaces, sheet, c));
-                return (landed.unwrap_or(NONE), Some((way, normal)));
+                return (alone(landed.unwrap_or(NONE)), Some((way, normal)));
             }
-            (descent.unwrap_or(if next == index { NONE } else { next }), None)
+            (if stays || next == index { descent } else { alone(next) }, None)
         };
         let ways: Vec<_> = (0..count as u32).into_par_iter().map(way_of).collect();
-        let mut cells = vec![0u32; count];
+        let mut cells = vec![0.0f32; count];
         let mut rained = 0;
         for cell in 0..surfaces.region.cells[0] * surfaces.region.cells[1] {
             if let Some(top) = surfaces.of(cell).next() {
-                cells[top as usize] = 1;
+                cells[top as usize] = 1.0;
                 rained += 1;
             }
         }
         // Each surface after all those whose water it gets.
         let mut waits = vec![0u32; count];
-        for &(to, _) in ways.iter().filter(|way| way.0 != NONE) {
+        for &(to, _) in ways.iter().flat_map(|way| &way.0).filter(|part| part.0 != NONE) {
             waits[to as usize] += 1;
         }
         let mut lengths = vec![0.0f32; count];
         let mut ready: Vec<u32> = (0..count as u32).filter(|&k| waits[k as usize] == 0).collect();
         while let Some(index) = ready.pop() {
-            let (to, over) = ways[index as usize];
-            if to == NONE {
-                continue;
-            }
-            let step = match over {
-                None => apart(surfaces.sheet(index), surfaces.sheet(to), surfaces),
-                Some(_) => 0.0,
-            };
-            let length = lengths[index as usize] + step;
-            let of_next = &mut lengths[to as usize];
-            *of_next = of_next.max(length);
-            cells[to as usize] += cells[index as usize];
-            waits[to as usize] -= 1;
-            if waits[to as usize] == 0 {
-                ready.push(to);
+            let (parts, over) = &ways[index as usize];
+            for &(to, fraction) in parts.iter().filter(|part| part.0 != NONE) {
+                let step = match over {
+                    None => apart(surfaces.sheet(index), surfaces.sheet(to), surfaces),
+                    Some(_) => 0.0,
+                };
+                let length = lengths[index as usize] + step;
+                let of_next = &mut lengths[to as usize];
+                *of_next = of_next.max(length);
+                cells[to as usize] += cells[index as usize] * fraction;
+                waits[to as usize] -= 1;
+                if waits[to as usize] == 0 {
+                    ready.push(to);
+                }
             }
         }
         let mut outflows = Vec::new();
         for (sheet, &(_, over)) in (0u32..).zip(&ways) {
             let (number, length) = (cells[sheet as usize], lengths[sheet as usize]);
-            if let Some((way, normal)) = over.filter(|_| number > 0) {
+            if let Some((way, normal)) = over.filter(|_| number > 0.0) {
                 outflows.push(Outflow { sheet, way: WAYS[way], normal, cells: number, length });
             }
         }

@@ -90,7 +90,12 @@ impl DripRegion {
     }
 }
 
-pub(super) fn out_of_range(quantity: &'static str, found: f64, unit: &'static str, allowed: &'static str) -> SimError {
+pub(super) fn out_of_range(
+    quantity: &'static str,
+    found: f64,
+    unit: &'static str,
+    allowed: &'static str,
+) -> SimError {
     SimError::OutOfRange(OutOfRange { quantity, found, unit, allowed: allowed.into() })
 }
 
