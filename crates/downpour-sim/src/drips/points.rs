@@ -97,7 +97,7 @@ impl DripPoints {
                 "up to 1048576",
             ));
         }
-        Ok(Self { points, rained_m2: f64::from(found.rained) * cell_m2, ran_down_m2 })
+        Ok(Self { points, rained_m2: f64::from(found.rained) * cell_m2, ran_down_m2: ran_down_m2 + 0.0 })
     }
 }
 
@@ -196,8 +196,11 @@ impl Edges<'_> {
                 None => outside = half,
             }
         }
-        // On the edge itself a ray may meet the underside alone.
-        height = goes_on(inside - INSET_M, [inside, height]).unwrap_or(height);
+        // On the edge itself a ray may meet the underside alone: its height is that of the surface before it, continued.
+        let before = |insets: f32| goes_on(inside - insets * INSET_M, [inside, height]);
+        if let (Some(near), Some(far)) = (before(1.0), before(2.0)) {
+            height = 2.0 * near - far;
+        }
         let at = middle + beside + way * inside;
         let edge = Vec3::new(at.x, height, at.y);
         let outward = Vec3::new(outflow.normal[0], 0.0, outflow.normal[1]);
