@@ -37,8 +37,8 @@ pub use fits::{
     fall_speed_van_dijk_2002,
 };
 pub use motion::{
-    FallNumbers, Relaxation, distance_to_fraction, fall_numbers, fall_speed_relaxation, relaxation,
-    speed_after_fall, time_to_fraction,
+    FallNumbers, Relaxation, distance_to_fraction, fall_from_rest, fall_numbers, fall_speed_relaxation,
+    relaxation, speed_after_fall, time_of_fall, time_to_fraction,
 };
 pub use tables::{fall_speed_gunn_kinzer_1949, fall_speed_rousseau_2006};
 

@@ -1,8 +1,8 @@
 //! Physics of a raindrop and of rain.
 //!
 //! One drop: its [`shape`] and [`axis_ratio`], its [`mesh`], its [`fall_speed`], its [`oscillation`], its
-//! [`optics`]. Many drops: their size [`distribution`], computed from a rain rate, the [`wetness`] of what they fall on, and the
-//! [`splash`] of each. The
+//! [`optics`]; drops that leave an edge ([`drip`]) and their [`splash`]. Many drops: their size [`distribution`], computed from a
+//! rain rate, and the [`wetness`] of what they fall on. The
 //! media: [`water`] and [`air`].
 //!
 //! Units are SI: meters, seconds, kilograms, radians, pascals; temperatures in degrees Celsius where the name says
@@ -24,6 +24,7 @@
 pub mod air;
 pub mod axis_ratio;
 pub mod distribution;
+pub mod drip;
 mod error;
 pub mod fall_speed;
 pub mod mesh;

@@ -17,6 +17,8 @@ pub enum DropKind {
     Bounced,
     /// Crown of the splash of a drop that hit a surface.
     Splash,
+    /// Hangs at an edge, or falls from it.
+    Dripped,
 }
 
 impl DropKind {
@@ -27,6 +29,7 @@ impl DropKind {
             Self::Falling => "falling",
             Self::Bounced => "bounced",
             Self::Splash => "splash",
+            Self::Dripped => "dripped",
         }
     }
 }

@@ -3,6 +3,7 @@
 //! - [`field`]: rain in closed form, in still air or in a uniform wind: at any position and time the same drops from
 //!   the same seed, without those that obstacles have stopped ([`shelter`]);
 //! - [`impacts`]: positions and times of its impacts, and the droplets that rebound;
+//! - [`drips`]: water that runs to edges and drips from them;
 //! - [`simulation`]: rain step by step in a volume that follows the camera: any wind, bounces, impacts; on a GPU as
 //!   well (`gpu`, feature `wgpu`);
 //! - [`collision`]: collision map of the surfaces that its drops hit;
@@ -14,6 +15,7 @@
 pub mod collision;
 mod disdrometer;
 mod drift;
+pub mod drips;
 pub mod enter;
 mod error;
 mod falling;

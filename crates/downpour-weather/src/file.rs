@@ -1,5 +1,6 @@
 //! Raw file: tables of keys with units, before they become a [`Weather`].
 
+use super::drips::{DripTable, Drips, DripsTable};
 use super::fault::Positions;
 use super::glass::GlassTable;
 use super::lamps::{Lamp, LampTable};
@@ -13,7 +14,7 @@ use super::splashes::{Splashes, SplashesTable};
 use super::streaks::StreaksTable;
 use super::wetness::{Wetness, WetnessTable};
 use super::wind::{self, GustsTable, TurbulenceTable, WindFieldTable, WindTable};
-use super::{Camera, MAX_LIGHTS, MAX_MODELS, MAX_PUDDLES, Weather, camera::CameraTable};
+use super::{Camera, MAX_DRIPS, MAX_LIGHTS, MAX_MODELS, MAX_PUDDLES, Weather, camera::CameraTable};
 use downpour_scene::error::{SceneError, quoted};
 use downpour_scene::uri::{Address, RelativePath, check};
 use serde::Deserialize;
@@ -42,6 +43,8 @@ struct Tables {
     puddle: Vec<PuddleTable>,
     wetness: WetnessTable,
     splashes: SplashesTable,
+    drips: DripsTable,
+    drip: Vec<DripTable>,
     output: OutputTable,
 }
 
@@ -60,6 +63,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         ("light", tables.light.len(), MAX_LIGHTS),
         ("flash", tables.flash.len(), MAX_FLASHES),
         ("puddle", tables.puddle.len(), MAX_PUDDLES),
+        ("drip", tables.drip.len(), MAX_DRIPS),
         ("wind", tables.wind.len(), downpour_wind::WIND_PARTS),
     ] {
         if count > most {
@@ -77,6 +81,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         name: String::new(),
         wetness: Wetness::checked(&tables.wetness, &rain, &positions)?,
         splashes: Splashes::checked(&tables.splashes, &positions)?,
+        drips: Drips::checked(&tables.drips, &tables.drip),
         lightning: Lightning::checked(&tables.lightning, &tables.flash, rain.seed, &positions)?,
         glass: tables.glass.map(|glass| glass.checked(&rain, &positions)).transpose()?,
         rain,

@@ -23,6 +23,7 @@
 )]
 
 mod camera;
+mod drips;
 mod fault;
 mod file;
 mod glass;
@@ -48,6 +49,7 @@ use std::path::Path;
 
 pub use camera::{Camera, CameraPath, CameraPose, FAR_M, FOV_RAD, NEAR_M, Observer, PERSISTENCE_S};
 pub use downpour_scene::uri::RelativePath;
+pub use drips::{DripPoint, Drips};
 pub use glass::{Pane, PaneFocus, PaneFresnel, PaneShadow};
 pub use lamps::Lamp;
 pub use lightning::{
@@ -81,6 +83,9 @@ pub const MAX_LIGHTS: usize = 1024;
 
 /// Maximum number of entries `[[puddle]]`.
 pub const MAX_PUDDLES: usize = 16;
+
+/// Maximum number of entries `[[drip]]`.
+pub const MAX_DRIPS: usize = 4096;
 
 /// Contents of a weather file, checked: all numbers are finite and in the ranges of [the table](self).
 ///
@@ -140,6 +145,8 @@ pub struct Weather {
     pub wetness: Wetness,
     /// Splashes where drops hit surfaces.
     pub splashes: Splashes,
+    /// Water that drips from edges.
+    pub drips: Drips,
     /// Width and height of the picture, in pixels.
     pub size: [u32; 2],
 }
@@ -163,6 +170,7 @@ impl Default for Weather {
             puddles: Vec::new(),
             wetness: Wetness::default(),
             splashes: Splashes::default(),
+            drips: Drips::default(),
             size: [1280, 720],
         }
     }

@@ -106,6 +106,8 @@ ranges! {
     FilmMm: 0.05, 10.0, "0.05 to 10 mm";
     SplashSize: 0.1, 10.0, "0.1 to 10";
     DryingS: 1.0, 1e7, "1 to 1e7 s";
+    DripsPerS: 0.001, 1000.0, "0.001 to 1000 drops per second";
+    DripMm: 0.5, 6.4, "0.5 to 6.4 mm";
     PeriodS: 0.1, 1e6, "0.1 to 1e6 s";
     RiseMs: 0.0, 100.0, "0 to 100 ms";
     FlashMs: 0.1, 1000.0, "0.1 to 1000 ms";

@@ -152,8 +152,10 @@ impl Renderer {
         let first = Stage::new(&weather, &loaded, options.first_s)?;
         let masks = DropMasks::of_weather(&weather, &loaded)?;
         let masks = if let Some(atlas) = &options.atlas { masks.with_atlas(atlas) } else { masks };
-        let shower = Shower::new(&weather)?;
-        if !loaded.is_animated() {
+        let mut shower = Shower::new(&weather)?;
+        if loaded.is_animated() {
+            shower.find_drips(&Stage::new(&weather, &loaded, 0.0)?)?;
+        } else {
             // The files have become buffers.
             loaded.scene = Scene::default();
         }
@@ -216,7 +218,7 @@ impl Renderer {
                 return Err(error.into());
             }
         }
-        self.shower = Shower::new(&self.weather)?;
+        self.shower = Shower::new(&self.weather)?.with_drips_of(&self.shower);
         self.water = None;
         Ok(())
     }

@@ -1,5 +1,6 @@
 //! The rain of a weather before an eye, at one time after the other: in closed form, or step by step.
 
+mod dripping;
 mod error;
 mod scenery;
 mod stepped;
@@ -22,6 +23,7 @@ use glam::DVec3;
 use downpour_render::glass::pane_plane;
 use downpour_render::rain::{DropMasks, MediumOptions, PanePlane, RainMedium};
 use downpour_trace::stage::Stage;
+use dripping::Dripping;
 pub use error::ShowerError;
 pub use scenery::{MovingEye, MovingScenery, Scenery, Still};
 use stepped::Stepped;
@@ -46,7 +48,7 @@ pub struct ShowerView {
     pub resolved: Resolved,
     /// The pane before the eye: there is no rain on the eye's side.
     pub pane: Option<PanePlane>,
-    /// Droplets that rebound, and splashes, in the world: these are found already.
+    /// Droplets that rebound, drops that drip, and splashes, in the world: these are found already.
     pub droplets: Vec<FallingDrop>,
 }
 
@@ -58,6 +60,7 @@ pub struct Shower {
     bounce: Bounce,
     /// Splashes of drops, unless there are none.
     splashes: Option<SplashOptions>,
+    dripping: Option<Dripping>,
     form: Form,
 }
 
@@ -80,8 +83,33 @@ impl Shower {
             (RainVolume::ClosedForm, None) => return Err(ShowerError::NotUniform),
             _ => Form::Stepped(Box::new(Stepped::new(law.clone(), weather))),
         };
-        let splashes = splashes(weather)?;
-        Ok(Self { law, weather: weather.clone(), bounce: bounce(rain), splashes, form })
+        let (dripping, splashes) = (Dripping::new(weather)?, splashes(weather)?);
+        Ok(Self { law, weather: weather.clone(), bounce: bounce(rain), dripping, splashes, form })
+    }
+
+    /// Finds where water drips in a scene, which takes a while. Else it is found for the first picture, in the scene of that: of a scene
+    /// that moves pictures are the same in any order only if this is its scene of one time.
+    ///
+    /// # Errors
+    /// [`ShowerError::Sim`] for more than [`MAX_POINTS`](downpour_sim::drips::MAX_POINTS) drip points.
+    pub fn find_drips(&mut self, stage: &Stage) -> Result<(), ShowerError> {
+        self.dripping.as_ref().map_or(Ok(()), |dripping| dripping.find(stage))
+    }
+
+    /// Takes over the drip points that the rain of the same weather has found.
+    pub(crate) fn with_drips_of(self, other: &Self) -> Self {
+        Self { dripping: other.dripping.clone(), ..self }
+    }
+
+    /// Drops that drip, as a picture shows them.
+    fn drips(
+        &self,
+        stage: &Stage,
+        view: &View,
+        least: f64,
+        time_s: f64,
+    ) -> Result<Vec<FallingDrop>, ShowerError> {
+        self.dripping.as_ref().map_or(Ok(Vec::new()), |dripping| dripping.visible(stage, view, least, time_s))
     }
 
     /// True if the drops are found in closed form, and not step by step.
@@ -127,6 +155,9 @@ impl Shower {
             }
             Form::Stepped(stepped) => stepped.at(scenery, stage, time_s, passed)?,
         };
+        let view = View { max_drops: self.weather.rain.max_drops, ..stage.view()? };
+        let dripped = self.drips(stage, &view, visible.resolved.least_pixels, time_s)?;
+        visible.drops.extend(dripped);
         // A pane keeps the rain outside.
         if let Some(pane) = pane_plane(&self.weather, &stage.viewpoint)? {
             keep_outside(&mut visible.drops, &pane, stage.view()?.eye);
@@ -153,6 +184,7 @@ impl Shower {
         let least = resolved.least_pixels;
         let obstacles = obstacles(stage);
         let mut droplets = field.bounced(&obstacles, &view, least, time_s, &self.bounce)?;
+        droplets.extend(self.drips(stage, &view, least, time_s)?);
         if let Some(splashes) = &self.splashes {
             droplets.extend(field.splashes(&obstacles, &view, time_s, splashes)?);
         }

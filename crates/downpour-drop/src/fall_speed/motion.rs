@@ -76,6 +76,43 @@ pub fn speed_after_fall(terminal_m_s: f64, distance_m: f64) -> f64 {
     terminal_m_s * (-ops::exp_m1(exponent)).sqrt()
 }
 
+/// Distance in m that a drop of terminal speed `terminal_m_s` has fallen from rest after `time_s` seconds, and its speed in
+/// m/s: `v^2 / g ln cosh(g t / v)` and `v tanh(g t / v)`.
+///
+/// ```
+/// let [distance, speed] = downpour_drop::fall_speed::fall_from_rest(9.0, 0.5);
+/// assert!((distance - 1.168).abs() < 1.0e-3 && (speed - 4.471).abs() < 1.0e-3);
+/// ```
+#[must_use]
+pub fn fall_from_rest(terminal_m_s: f64, time_s: f64) -> [f64; 2] {
+    if terminal_m_s <= 0.0 || time_s <= 0.0 {
+        return [0.0; 2];
+    }
+    let x = STANDARD_GRAVITY * time_s / terminal_m_s;
+    // ln cosh x = x + ln((1 + exp(-2x)) / 2), whose digits are lost where x is small.
+    let ln_cosh = if x < 1.0e-2 {
+        x * x * (0.5 - x * x / 12.0)
+    } else {
+        x + ops::ln_1p(ops::exp(-2.0 * x)) - std::f64::consts::LN_2
+    };
+    [terminal_m_s * terminal_m_s / STANDARD_GRAVITY * ln_cosh, terminal_m_s * ops::tanh(x)]
+}
+
+/// Time in s in which a drop of terminal speed `terminal_m_s` falls `distance_m` meters from rest:
+/// `v / g arcosh(exp(g y / v^2))`; infinite for a speed of 0.
+#[must_use]
+pub fn time_of_fall(terminal_m_s: f64, distance_m: f64) -> f64 {
+    if distance_m <= 0.0 {
+        return 0.0;
+    }
+    if terminal_m_s <= 0.0 {
+        return f64::INFINITY;
+    }
+    let a = STANDARD_GRAVITY * distance_m / (terminal_m_s * terminal_m_s);
+    // arcosh(exp a) = a + ln(1 + sqrt(1 - exp(-2a))).
+    terminal_m_s / STANDARD_GRAVITY * (a + ops::ln_1p((-ops::exp_m1(-2.0 * a)).sqrt()))
+}
+
 fn checked_fraction(fraction: f64) -> Result<f64, DropError> {
     if (0.0..1.0).contains(&fraction) {
         return Ok(fraction);
