@@ -26,6 +26,7 @@ mod camera;
 mod fault;
 mod file;
 mod glass;
+mod keys;
 mod lamps;
 mod lightning;
 mod load;
@@ -48,12 +49,13 @@ use std::path::Path;
 pub use camera::{Camera, CameraPath, CameraPose, FAR_M, FOV_RAD, NEAR_M, Observer, PERSISTENCE_S};
 pub use downpour_scene::uri::RelativePath;
 pub use glass::{Pane, PaneFocus, PaneFresnel, PaneShadow};
+pub use keys::WeatherKeys;
 pub use lamps::Lamp;
 pub use lightning::{
     Flash, FlashExposure, FlashLight, Lightning, MAX_FLASHES, MAX_STROKES, MAX_STROKES_PER_SECOND, Storm,
     Stroke, StrokePulse,
 };
-pub use load::{Loaded, Roots, load};
+pub use load::{Loaded, Roots, lamps_at, load};
 pub use models::{Model, Repeat};
 pub use puddle::{MAX_ALL_PUDDLE_CELLS, MAX_PUDDLE_CELLS, Puddle, PuddleFill, PuddleShape};
 pub use rain::{
@@ -138,6 +140,9 @@ pub struct Weather {
     pub wetness: Wetness,
     /// Width and height of the picture, in pixels.
     pub size: [u32; 2],
+    /// Values that change over time: [`Weather::at`]. The other fields hold those of time 0. Wind, speed of the air at a pane,
+    /// wipers and the path of the camera have their own keys.
+    pub keys: WeatherKeys,
 }
 
 impl Default for Weather {
@@ -159,6 +164,7 @@ impl Default for Weather {
             puddles: Vec::new(),
             wetness: Wetness::default(),
             size: [1280, 720],
+            keys: WeatherKeys::default(),
         }
     }
 }
