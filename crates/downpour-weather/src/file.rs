@@ -6,6 +6,7 @@ use super::keys::WeatherKeys;
 use super::lamps::{Lamp, LampTable};
 use super::lightning::{FlashTable, Lightning, LightningTable, MAX_FLASHES};
 use super::models::{Model, ModelTable};
+use super::presets;
 use super::puddle::{self, Puddle, PuddleTable};
 use super::quantity::{Exactly, Whole};
 use super::rain::{Rain, RainTable};
@@ -25,6 +26,7 @@ const MAX_PATH: usize = 4096;
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct Tables {
+    preset: Option<String>,
     rain: RainTable,
     sky: SkyTable,
     sun: Option<SunTable>,
@@ -53,7 +55,8 @@ struct OutputTable {
 /// Parses text to checked values.
 pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
     let positions = Positions::find(text)?;
-    let tables: Tables = toml::from_str(text).map_err(|error| positions.refused(&error))?;
+    let own: Tables = toml::from_str(text).map_err(|error| positions.refused(&error))?;
+    let tables = with_preset(own, text.len(), &positions)?;
     for (key, count, most) in [
         ("model", tables.model.len(), MAX_MODELS),
         ("light", tables.light.len(), MAX_LIGHTS),
@@ -97,6 +100,14 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         keys: WeatherKeys::new(camera_keys, sky_keys, sun_keys, lamp_keys, fills),
         size: tables.output.size.map_or(default.size, |Exactly(size)| size.map(|Whole(side)| side)),
     })
+}
+
+/// The tables of a file with those of its preset, if it names one.
+fn with_preset(own: Tables, end: usize, positions: &Positions<'_>) -> Result<Tables, SceneError> {
+    let Some(name) = &own.preset else { return Ok(own) };
+    let merged = positions.with_preset(presets::text(name, positions)?)?;
+    let merged = toml::de::Deserializer::from(toml::Spanned::new(0..end, merged));
+    Tables::deserialize(merged).map_err(|error| positions.refused(&error))
 }
 
 /// All entries of a list, or the first error.

@@ -31,6 +31,7 @@ mod lamps;
 mod lightning;
 mod load;
 mod models;
+mod presets;
 mod puddle;
 mod quantity;
 mod rain;
@@ -57,6 +58,7 @@ pub use lightning::{
 };
 pub use load::{Loaded, Roots, lamps_at, load};
 pub use models::{Model, Repeat};
+pub use presets::PRESETS;
 pub use puddle::{MAX_ALL_PUDDLE_CELLS, MAX_PUDDLE_CELLS, Puddle, PuddleFill, PuddleShape};
 pub use rain::{
     RAIN_BOX_M, Rain, RainBounce, RainCylinder, RainDrag, RainDropLight, RainDropShape, RainExtinction,

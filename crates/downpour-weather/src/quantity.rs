@@ -149,7 +149,7 @@ impl<'de, R: Range> Deserialize<'de> for In<R> {
 
 struct Number<R>(PhantomData<R>);
 
-impl<R: Range> Visitor<'_> for Number<R> {
+impl<'de, R: Range> Visitor<'de> for Number<R> {
     type Value = In<R>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -158,6 +158,13 @@ impl<R: Range> Visitor<'_> for Number<R> {
 
     fn visit_f64<E: Error>(self, value: f64) -> Result<In<R>, E> {
         In::checked(value)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, _: A) -> Result<In<R>, A::Error> {
+        Err(A::Error::custom(format_args!(
+            "an array: this key has no keyframes{ALLOWED}a number, {}",
+            R::WORDS
+        )))
     }
 
     fn visit_i64<E: Error>(self, value: i64) -> Result<In<R>, E> {

@@ -135,6 +135,11 @@ fn bad_keys_are_refused() {
             "puddle[0].fill",
             "0 to 1",
         ),
+        (
+            "[rain]\nrate_mm_h = [[0, 0], [10, 50]]".into(),
+            "rain.rate_mm_h: an array: this key has no keyframes",
+            "500 mm/h",
+        ),
         (format!("[sky]\nintensity = [{many}]"), "5000 keys", "at most 4096"),
     ] {
         let error = parse(&text).unwrap_err().to_string();
