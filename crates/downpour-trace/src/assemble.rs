@@ -7,7 +7,8 @@ use std::sync::Arc;
 
 use downpour_scene::picture::{Picture, Pixels};
 use downpour_scene::scene::{
-    AlphaMode, Encoding, Instance, LightKind, Material, Pose, Scene, TextureRef, Wrap, skin_primitive,
+    AlphaMode, Encoding, Instance, Light, LightKind, Material, PlacedLight, Pose, Scene, TextureRef, Wrap,
+    skin_primitive,
 };
 use downpour_shaders::render::scene::{
     SCENE_BLENDED, SCENE_DOUBLE_SIDED, SCENE_MASKED, SCENE_MIRROR_U, SCENE_MIRROR_V, SCENE_REPEAT_U,
@@ -61,24 +62,7 @@ impl SceneBuilder {
         }
         for placed in &pose.lights {
             let Some(light) = scene.lights.get(placed.light) else { continue };
-            let strength = light.color * light.intensity;
-            let range = light.range.unwrap_or(0.0);
-            let radius = light.radius.unwrap_or(0.0);
-            let position = pose.world_f64(placed.node).map_or(placed.position.as_dvec3(), |w| w.translation);
-            let (position, direction) = ((position - origin).as_vec3(), placed.direction);
-            self.add_light(match light.kind {
-                LightKind::Directional => LightSource::Directional { direction, irradiance: strength },
-                LightKind::Point => LightSource::Point { position, radius, intensity: strength, range },
-                LightKind::Spot { inner, outer } => LightSource::Spot {
-                    position,
-                    radius,
-                    direction,
-                    intensity: strength,
-                    range,
-                    inner,
-                    outer,
-                },
-            });
+            self.add_light(light_source(light, placed, pose, origin));
         }
     }
 
@@ -209,4 +193,20 @@ fn digest(picture: &Picture) -> u64 {
 
 fn same(a: &Picture, b: &Picture) -> bool {
     (a.width, a.height) == (b.width, b.height) && a.pixels == b.pixels
+}
+
+/// A light of a pose, relative to `origin`.
+pub(crate) fn light_source(light: &Light, placed: &PlacedLight, pose: &Pose, origin: DVec3) -> LightSource {
+    let strength = light.color * light.intensity;
+    let range = light.range.unwrap_or(0.0);
+    let radius = light.radius.unwrap_or(0.0);
+    let position = pose.world_f64(placed.node).map_or(placed.position.as_dvec3(), |w| w.translation);
+    let (position, direction) = ((position - origin).as_vec3(), placed.direction);
+    match light.kind {
+        LightKind::Directional => LightSource::Directional { direction, irradiance: strength },
+        LightKind::Point => LightSource::Point { position, radius, intensity: strength, range },
+        LightKind::Spot { inner, outer } => {
+            LightSource::Spot { position, radius, direction, intensity: strength, range, inner, outer }
+        }
+    }
 }

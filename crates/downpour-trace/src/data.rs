@@ -140,6 +140,17 @@ impl SceneData {
         (self.puddles, self.puddle_count, self.pane, self.wetness) = (0, 0, 0, 0);
     }
 
+    /// Replaces light `index` by another of the same kind; the glass of a lamp keeps its radius.
+    pub(crate) fn replace_light(&mut self, index: u32, light: &LightSource) {
+        let first = (self.lights + index * SCENE_LIGHT_ROWS) as usize;
+        let Some(rows) = self.table.get_mut(first..first + SCENE_LIGHT_ROWS as usize) else { return };
+        let (kind, radius) = (rows[0][3], rows[3][2]);
+        for (row, new) in rows.iter_mut().zip(light.rows()) {
+            *row = new;
+        }
+        (rows[0][3], rows[3][2]) = (kind, radius);
+    }
+
     /// Says how large the glass of lamp `index` is, in meters, which is in the model and shines. That of a spot shines elsewhere, too.
     pub(crate) fn set_lamp_glass(&mut self, index: u32, radius: Option<f32>, is_spot: bool) {
         let row = (self.lights + index * SCENE_LIGHT_ROWS) as usize;

@@ -10,6 +10,7 @@ mod error;
 mod eye;
 mod flash;
 mod framing;
+mod light;
 mod sky;
 #[cfg(test)]
 mod tests;
@@ -28,7 +29,6 @@ use crate::data::SceneData;
 use crate::wet::SceneWetness;
 use downpour_render::RenderError;
 use downpour_render::camera::{EyeMotion, MAX_EXPOSURE_S, PictureEdge, Viewpoint, check_size};
-use downpour_render::light::LightSource;
 use downpour_render::tone::{GRAY, tone_automatic_exposure, tone_luminance};
 pub use error::StageError;
 pub use eye::CameraChoice;
@@ -107,26 +107,25 @@ impl Stage {
         let mut builder = SceneBuilder::new();
         builder.add_scene(&loaded.scene, &pose, origin);
         if let Some(sun) = loaded.sun {
-            builder.add_light(LightSource::Directional {
-                direction: -Vec3::from(sun.direction),
-                irradiance: sun.irradiance_rgb.into(),
-            });
+            builder.add_light(light::sun_light(&sun));
         }
         let triangles = builder.triangle_count();
         let mut data = builder.build(&sky::light(&loaded.sky));
         if let Some(sun) = loaded.sun {
             data.set_light_radius(data.light_count - 1, sun.angular_radius);
         }
+        light::relight(&mut data, weather, loaded, origin, time_s);
         data.set_wetness(SceneWetness::of(weather, time_s, origin).as_ref());
         let fov =
             weather.camera.fov.unwrap_or_else(|| seen.as_ref().map_or(weather::FOV_RAD, |seen| seen.fov));
-        let (camera, viewpoint) = match &seen {
+        let (camera, mut viewpoint) = match &seen {
             Some(seen) => (seen.choice.clone(), seen.viewpoint(fov, origin)),
             None if triangles > 0 => {
                 (CameraChoice::Framing, framing::of_bounds(data.bounds(), weather.size, fov))
             }
             None => (CameraChoice::Standing, framing::standing(fov)),
         };
+        set_fov(&mut viewpoint, weather, time_s);
         // An invalid camera is reported here, before the work begins.
         viewpoint.axes()?;
         Ok(Self {
@@ -153,6 +152,8 @@ impl Stage {
     pub fn seen_at(&self, weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, StageError> {
         let Some(seen) = CameraView::of(weather, loaded, &posed(loaded, time_s), time_s) else {
             let mut stage = self.clone();
+            set_fov(&mut stage.viewpoint, weather, time_s);
+            light::relight(&mut stage.data, weather, loaded, self.origin, time_s);
             stage.data.set_wetness(SceneWetness::of(weather, time_s, self.origin).as_ref());
             return Ok(stage);
         };
@@ -160,9 +161,11 @@ impl Stage {
         if distance_m > NEAR_ORIGIN_M {
             return Err(StageError::TooFar { distance_m });
         }
-        let viewpoint = seen.viewpoint(weather.camera.fov.unwrap_or(seen.fov), self.origin);
+        let mut viewpoint = seen.viewpoint(weather.camera.fov.unwrap_or(seen.fov), self.origin);
+        set_fov(&mut viewpoint, weather, time_s);
         viewpoint.axes()?;
         let mut stage = Self { viewpoint, motion: motion(weather, loaded, time_s), ..self.clone() };
+        light::relight(&mut stage.data, weather, loaded, self.origin, time_s);
         stage.data.set_wetness(SceneWetness::of(weather, time_s, self.origin).as_ref());
         Ok(stage)
     }
@@ -185,10 +188,24 @@ impl Stage {
             return Ok(Self::new(weather, loaded, time_s)?.view()?);
         };
         let origin = origin_near(seen.eye);
-        let viewpoint = seen.viewpoint(weather.camera.fov.unwrap_or(seen.fov), origin);
+        let mut viewpoint = seen.viewpoint(weather.camera.fov.unwrap_or(seen.fov), origin);
+        set_fov(&mut viewpoint, weather, time_s);
         let depth = depth(weather, Some(&seen));
         let motion = motion(weather, loaded, time_s);
         Ok(view_of(&viewpoint, origin, weather.size, depth, weather.camera.shutter, &motion)?)
+    }
+
+    /// [`Stage::view_at`] for a scene that stands still, whose camera may be that of its model: only the field of view changes then.
+    ///
+    /// # Errors
+    /// As [`Stage::view_at`].
+    pub fn seen_view_at(&self, weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<View, StageError> {
+        if weather.camera.path.is_some() {
+            return Self::view_at(weather, loaded, time_s);
+        }
+        let mut viewpoint = self.viewpoint;
+        set_fov(&mut viewpoint, weather, time_s);
+        Ok(view_of(&viewpoint, self.origin, self.size, self.depth, self.shutter_s, &self.motion)?)
     }
 
     /// Returns drops with their positions relative to `origin`.
@@ -235,6 +252,15 @@ impl Stage {
         .into_iter()
         .map(|bytes| bytes as u64)
         .sum()
+    }
+}
+
+/// Sets the field of view to that of a time in seconds, if it changes.
+fn set_fov(viewpoint: &mut Viewpoint, weather: &Weather, time_s: f64) {
+    if weather.keys.has_fov()
+        && let Some(fov) = weather.at(time_s).camera.fov
+    {
+        viewpoint.fov_y = fov as f32;
     }
 }
 

@@ -16,15 +16,15 @@ const SEED: u64 = 0x7075_6464_6c65_0001;
 /// Depth of rain by which the water of a picture may be behind, m: maps are not made anew for each picture.
 const STEP_M: f64 = 2.0e-5;
 
-/// A puddle that the rain fills.
+/// A puddle that the rain fills, or keys do.
 #[derive(Debug)]
 struct Filled {
     /// Index of the puddle.
     index: usize,
     ground: PuddleGround,
     limits: FillLimits,
-    /// Depth of water that seeps away, m/s.
-    seepage: f64,
+    /// Depth of water that seeps away, m/s; `None` for a puddle that keys fill.
+    seepage: Option<f64>,
     /// Present filling.
     filling: Filling,
 }
@@ -68,11 +68,13 @@ impl WetGround {
                     let ground = PuddleGround::new(&stage.data, &ground, cells.map(|n| n as usize), &relief);
                     let limits = FillLimits { deepest: puddle.depth as f32, least: min_depth as f32 };
                     let (filling, seepage) = match fill {
-                        PuddleFill::Part(part) => (Filling::Fraction(part as f32), None),
+                        PuddleFill::Part(_) => (given(weather, index, first_s), None),
                         PuddleFill::Rain { seepage } => (filling(weather, seepage, first_s), Some(seepage)),
                     };
                     let map = ground.filled(&filling, &limits);
-                    filled.extend(seepage.map(|seepage| Filled { index, ground, limits, seepage, filling }));
+                    if seepage.is_some() || weather.keys.has_fill(index) {
+                        filled.push(Filled { index, ground, limits, seepage, filling });
+                    }
                     map
                 }
                 (PuddleShape::Painted(_), Some(mask)) => {
@@ -95,7 +97,10 @@ impl WetGround {
     /// As [`WetGround::new`].
     pub fn advance(&mut self, time_s: f64) -> Result<(), PuddleError> {
         for puddle in &mut self.filled {
-            let now = filling(&self.weather, puddle.seepage, time_s);
+            let now = match puddle.seepage {
+                Some(seepage) => filling(&self.weather, seepage, time_s),
+                None => given(&self.weather, puddle.index, time_s),
+            };
             if now != puddle.filling {
                 puddle.filling = now;
                 self.puddles[puddle.index].0 = puddle.ground.filled(&now, &puddle.limits);
@@ -127,6 +132,15 @@ fn ground(puddle: &Puddle, stage: &Stage) -> Ground {
         size: Vec2::from(puddle.size.map(|edge| edge as f32)),
         turn: puddle.turn as f32,
         reach: puddle.reach as f32,
+    }
+}
+
+/// The water of a puddle whose fill is given, at a time.
+fn given(weather: &Weather, index: usize, time_s: f64) -> Filling {
+    let now = weather.at(time_s);
+    match now.puddles.get(index).map(|puddle| &puddle.shape) {
+        Some(&PuddleShape::Found { fill: PuddleFill::Part(part), .. }) => Filling::Fraction(part as f32),
+        _ => Filling::Fraction(1.0),
     }
 }
 
@@ -193,6 +207,14 @@ mod tests {
         // 0.3 mm in 9400 s.
         assert!((before - 4.7e-3).abs() < 1.0e-6 && since == 0.0);
         assert!((lost - 0.115e-3).abs() < 2.1e-5, "{lost}");
+    }
+
+    #[test]
+    fn a_keyed_fill_is_that_of_the_time() {
+        let text = "[[puddle]]\nposition_m = [0, 0, 0]\nsize_m = [1, 1]\nfill = [[0, 0], [8, 1]]";
+        let weather = Weather::parse("w.toml", text).expect("a weather");
+        let found = [-1.0, 0.0, 2.0, 9.0].map(|time| given(&weather, 0, time));
+        assert_eq!(found, [0.0, 0.0, 0.25, 1.0].map(Filling::Fraction));
     }
 
     #[test]

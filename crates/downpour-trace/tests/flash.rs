@@ -68,6 +68,7 @@ fn scene(poles: &[Vec3]) -> Loaded {
         animations: Vec::new(),
         sky: SkyMap::uniform([5.0; 3]),
         sun: Some(Sun { direction: [0.0, 1.0, 0.0], irradiance_rgb: [50.0; 3], angular_radius: 0.005 }),
+        unscaled: None,
         masks: Vec::new(),
         drop_model: None,
         warnings: Vec::new(),

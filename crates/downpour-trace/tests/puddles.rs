@@ -226,6 +226,7 @@ fn a_weathers_puddles_lie_on_its_stage() -> Outcome {
         animations: Vec::new(),
         sky: SkyMap::uniform([1.0; 3]),
         sun: None,
+        unscaled: None,
         masks: Vec::new(),
         drop_model: None,
         warnings: Vec::new(),

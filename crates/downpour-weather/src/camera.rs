@@ -4,7 +4,7 @@ use super::fault::Positions;
 use super::quantity::{
     ApertureMm, DepthM, FocusM, FovDeg, In, PersistenceS, PitchDeg, PositionM, ShutterS, Stops, TurnDeg,
 };
-use super::wind::keys::VectorKeys;
+use super::wind::keys::{NumberKeys, VectorKeys, number_or};
 use downpour_math::ops::f64 as ops;
 use downpour_scene::error::SceneError;
 use downpour_wind::Keyed;
@@ -90,6 +90,8 @@ pub struct CameraPath {
 enum Aim {
     /// A constant unit direction.
     Along(DVec3),
+    /// Yaw and pitch, in degrees.
+    Turned { yaw_deg: Keyed<f64>, pitch_deg: Keyed<f64> },
     /// A target.
     At(Keyed<DVec3>),
 }
@@ -107,6 +109,7 @@ impl CameraPath {
         let position = self.position.at(time_s);
         let forward = match &self.aim {
             Aim::Along(forward) => *forward,
+            Aim::Turned { yaw_deg, pitch_deg } => forward_of(yaw_deg.at(time_s), pitch_deg.at(time_s)),
             Aim::At(target) => forward_to(position, target.at(time_s)),
         };
         CameraPose { position, forward }
@@ -115,7 +118,11 @@ impl CameraPath {
     /// True if the pose is constant.
     #[must_use]
     pub fn is_still(&self) -> bool {
-        let aims = if let Aim::At(target) = &self.aim { target.keys().len() } else { 1 };
+        let aims = match &self.aim {
+            Aim::Along(_) => 1,
+            Aim::Turned { yaw_deg, pitch_deg } => yaw_deg.keys().len().max(pitch_deg.keys().len()),
+            Aim::At(target) => target.keys().len(),
+        };
         self.position.keys().len() == 1 && aims == 1
     }
 }
@@ -125,6 +132,13 @@ impl From<CameraPose> for CameraPath {
     fn from(pose: CameraPose) -> Self {
         Self { position: pose.position.into(), aim: Aim::Along(pose.forward) }
     }
+}
+
+/// Direction of an eye with a yaw and a pitch, in degrees.
+fn forward_of(yaw_deg: f64, pitch_deg: f64) -> DVec3 {
+    let (yaw, pitch) = (yaw_deg.to_radians(), pitch_deg.to_radians());
+    let flat = ops::cos(pitch);
+    DVec3::new(-flat * ops::sin(yaw), ops::sin(pitch), -flat * ops::cos(yaw))
 }
 
 /// True if a direction is so near to the vertical that left and right are undefined.
@@ -162,21 +176,36 @@ impl Default for Camera {
 pub(super) struct CameraTable {
     position_m: Option<VectorKeys<PositionM>>,
     look_at_m: Option<VectorKeys<PositionM>>,
-    yaw_deg: Option<In<TurnDeg>>,
-    pitch_deg: Option<In<PitchDeg>>,
-    fov_deg: Option<In<FovDeg>>,
+    yaw_deg: Option<NumberKeys<TurnDeg>>,
+    pitch_deg: Option<NumberKeys<PitchDeg>>,
+    fov_deg: Option<NumberKeys<FovDeg>>,
     near_m: Option<In<DepthM>>,
     far_m: Option<In<DepthM>>,
-    exposure_ev: Option<In<Stops>>,
+    exposure_ev: Option<NumberKeys<Stops>>,
     observer: Option<Observer>,
     shutter_s: Option<In<ShutterS>>,
     persistence_s: Option<In<PersistenceS>>,
     aperture_mm: Option<In<ApertureMm>>,
-    focus_m: Option<In<FocusM>>,
+    focus_m: Option<NumberKeys<FocusM>>,
 }
 
 impl Camera {
-    pub(super) fn checked(table: &CameraTable, positions: &Positions<'_>) -> Result<Self, SceneError> {
+    /// The camera at a time in seconds, with the values of some keys. Position and direction are a path in any case.
+    pub(super) fn at(self, keys: &CameraKeys, time_s: f64) -> Self {
+        let at = |keyed: &Option<Keyed<f64>>| keyed.as_ref().map(|keyed| keyed.at(time_s));
+        Self {
+            fov: at(&keys.fov_deg).map_or(self.fov, |fov| Some(fov.to_radians())),
+            exposure_ev: at(&keys.exposure_ev).unwrap_or(self.exposure_ev),
+            focus: at(&keys.focus_m).or(self.focus),
+            ..self
+        }
+    }
+
+    pub(super) fn checked(
+        table: &CameraTable,
+        keys: &CameraKeys,
+        positions: &Positions<'_>,
+    ) -> Result<Self, SceneError> {
         let default = Self::default();
         let (near, far) = (table.near_m.map(|near| near.0), table.far_m.map(|far| far.0));
         let (nearest, farthest) = (near.unwrap_or(NEAR_M), far.unwrap_or(FAR_M));
@@ -186,21 +215,54 @@ impl Camera {
             return Err(positions.bad(key, found, "near_m below far_m"));
         }
         let observer = table.observer.unwrap_or_default();
-        Ok(Self {
+        let camera = Self {
             path: table.path(positions)?,
-            fov: table.fov_deg.map(|fov| fov.0.to_radians()),
+            fov: None,
             near,
             far,
-            exposure_ev: table.exposure_ev.map_or(default.exposure_ev, |ev| ev.0),
+            exposure_ev: default.exposure_ev,
             observer,
             shutter: table.shutter(observer, positions)?,
             aperture: table.aperture_mm.map_or(default.aperture, |pupil| pupil.0 * 1.0e-3),
-            focus: table.focus_m.map(|focus| focus.0),
-        })
+            focus: None,
+        };
+        Ok(camera.at(keys, 0.0))
+    }
+}
+
+/// Values of the camera that the file gives, over time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct CameraKeys {
+    /// Vertical field of view, in degrees.
+    pub(super) fov_deg: Option<Keyed<f64>>,
+    /// Exposure compensation, in stops.
+    pub(super) exposure_ev: Option<Keyed<f64>>,
+    /// Distance in focus, in meters.
+    pub(super) focus_m: Option<Keyed<f64>>,
+}
+
+impl CameraKeys {
+    /// The same without constant values.
+    pub(super) fn moving(self) -> Self {
+        let moving = |keyed: Option<Keyed<f64>>| keyed.filter(|keyed| keyed.keys().len() > 1);
+        Self {
+            fov_deg: moving(self.fov_deg),
+            exposure_ev: moving(self.exposure_ev),
+            focus_m: moving(self.focus_m),
+        }
     }
 }
 
 impl CameraTable {
+    /// Values over time.
+    pub(super) fn keys(&self, positions: &Positions<'_>) -> Result<CameraKeys, SceneError> {
+        Ok(CameraKeys {
+            fov_deg: keyed(self.fov_deg.as_ref(), "camera.fov_deg", positions)?,
+            exposure_ev: keyed(self.exposure_ev.as_ref(), "camera.exposure_ev", positions)?,
+            focus_m: keyed(self.focus_m.as_ref(), "camera.focus_m", positions)?,
+        })
+    }
+
     /// Exposure time, s. Rejects the key of the other observer.
     fn shutter(&self, observer: Observer, positions: &Positions<'_>) -> Result<f64, SceneError> {
         match (observer, self.shutter_s, self.persistence_s) {
@@ -238,11 +300,14 @@ impl CameraTable {
         };
         let position = position.keyed("camera.position_m", positions)?;
         let Some(target) = &self.look_at_m else {
-            let yaw = self.yaw_deg.map_or(0.0, |yaw| yaw.0).to_radians();
-            let pitch = self.pitch_deg.map_or(0.0, |pitch| pitch.0).to_radians();
-            let flat = ops::cos(pitch);
-            let forward = DVec3::new(-flat * ops::sin(yaw), ops::sin(pitch), -flat * ops::cos(yaw));
-            return Ok(Some(CameraPath { position, aim: Aim::Along(forward) }));
+            let yaw_deg = number_or(self.yaw_deg.as_ref(), 0.0, "camera.yaw_deg", positions)?;
+            let pitch_deg = number_or(self.pitch_deg.as_ref(), 0.0, "camera.pitch_deg", positions)?;
+            let aim = if yaw_deg.keys().len().max(pitch_deg.keys().len()) > 1 {
+                Aim::Turned { yaw_deg, pitch_deg }
+            } else {
+                Aim::Along(forward_of(yaw_deg.at(0.0), pitch_deg.at(0.0)))
+            };
+            return Ok(Some(CameraPath { position, aim }));
         };
         if let Some(key) = turned.find(|key| *key != "look_at_m") {
             let allowed = "look_at_m, or yaw_deg and pitch_deg";
@@ -264,4 +329,13 @@ impl CameraTable {
         }
         Ok(Some(CameraPath { position, aim: Aim::At(target) }))
     }
+}
+
+/// A number over time, if it is given.
+fn keyed<R>(
+    given: Option<&NumberKeys<R>>,
+    path: &str,
+    positions: &Positions<'_>,
+) -> Result<Option<Keyed<f64>>, SceneError> {
+    given.map(|given| given.keyed(path, positions)).transpose()
 }

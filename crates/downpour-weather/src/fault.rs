@@ -1,5 +1,6 @@
 //! Errors that name the line, the column and the key.
 
+use super::presets;
 use super::quantity::ALLOWED;
 use super::words::nearest;
 use super::{MAX_DEPTH, MAX_FILE};
@@ -49,6 +50,14 @@ impl<'a> Positions<'a> {
             Ok(())
         })?;
         Ok(positions)
+    }
+
+    /// The file's tables with those of a preset where it gives none.
+    pub(super) fn with_preset(&self, preset: &'static str) -> Result<DeTable<'a>, SceneError> {
+        let other = DeTable::parse(preset).map_err(|error| self.bad("preset", error.message(), VALID))?;
+        let mut tables = self.root.clone();
+        presets::merge(&mut tables, other.into_inner());
+        Ok(tables)
     }
 
     /// Error of serde, with its position.

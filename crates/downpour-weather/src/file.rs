@@ -3,9 +3,11 @@
 use super::drips::{DripTable, Drips, DripsTable};
 use super::fault::Positions;
 use super::glass::GlassTable;
+use super::keys::WeatherKeys;
 use super::lamps::{Lamp, LampTable};
 use super::lightning::{FlashTable, Lightning, LightningTable, MAX_FLASHES};
 use super::models::{Model, ModelTable};
+use super::presets;
 use super::puddle::{self, Puddle, PuddleTable};
 use super::quantity::{Exactly, Whole};
 use super::rain::{Rain, RainTable};
@@ -26,6 +28,7 @@ const MAX_PATH: usize = 4096;
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct Tables {
+    preset: Option<String>,
     rain: RainTable,
     sky: SkyTable,
     sun: Option<SunTable>,
@@ -57,7 +60,8 @@ struct OutputTable {
 /// Parses text to checked values.
 pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
     let positions = Positions::find(text)?;
-    let tables: Tables = toml::from_str(text).map_err(|error| positions.refused(&error))?;
+    let own: Tables = toml::from_str(text).map_err(|error| positions.refused(&error))?;
+    let tables = with_preset(own, text.len(), &positions)?;
     for (key, count, most) in [
         ("model", tables.model.len(), MAX_MODELS),
         ("light", tables.light.len(), MAX_LIGHTS),
@@ -70,12 +74,18 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
             return Err(positions.limit(key, format!("{count} times [[{key}]]"), format!("at most {most}")));
         }
     }
-    let sky = Sky::checked(&tables.sky, &positions)?;
+    let (sky, sky_keys) = Sky::checked(&tables.sky, &positions)?;
+    let (sun, sun_keys) = SunSource::checked(tables.sun.as_ref(), &sky, &positions)?;
+    let camera_keys = tables.camera.keys(&positions)?;
+    let camera = Camera::checked(&tables.camera, &camera_keys, &positions)?;
+    let lamps = numbered(&tables.light, |i, table| Lamp::checked(i, table, &positions))?;
+    let (lights, lamp_keys): (Vec<_>, Vec<_>) = lamps.into_iter().unzip();
     let rain = Rain::checked(&tables.rain, &positions)?;
     let streaks = tables.streaks.checked();
     let drop_model = tables.rain.drop_model(&streaks, &positions)?;
     let default = Weather::default();
     let puddles = numbered(&tables.puddle, |i, table| Puddle::checked(i, table, &positions))?;
+    let (puddles, fills): (Vec<_>, Vec<_>) = puddles.into_iter().unzip();
     puddle::check_all(&puddles, &positions)?;
     Ok(Weather {
         name: String::new(),
@@ -86,17 +96,26 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         glass: tables.glass.map(|glass| glass.checked(&rain, &positions)).transpose()?,
         rain,
         drop_model,
-        sun: SunSource::checked(tables.sun.as_ref(), &sky, &positions)?,
+        sun,
         sky,
-        camera: Camera::checked(&tables.camera, &positions)?,
+        camera,
         models: numbered(&tables.model, |i, table| Model::checked(i, table, &positions))?,
-        lights: numbered(&tables.light, |i, table| Lamp::checked(i, table, &positions))?,
+        lights,
         wind: wind::checked(&tables.wind, tables.gusts.as_ref(), tables.turbulence.as_ref(), &positions)?,
         wind_box: tables.wind_field.checked(&positions)?,
         streaks,
         puddles,
+        keys: WeatherKeys::new(camera_keys, sky_keys, sun_keys, lamp_keys, fills),
         size: tables.output.size.map_or(default.size, |Exactly(size)| size.map(|Whole(side)| side)),
     })
+}
+
+/// The tables of a file with those of its preset, if it names one.
+fn with_preset(own: Tables, end: usize, positions: &Positions<'_>) -> Result<Tables, SceneError> {
+    let Some(name) = &own.preset else { return Ok(own) };
+    let merged = positions.with_preset(presets::text(name, positions)?)?;
+    let merged = toml::de::Deserializer::from(toml::Spanned::new(0..end, merged));
+    Tables::deserialize(merged).map_err(|error| positions.refused(&error))
 }
 
 /// All entries of a list, or the first error.

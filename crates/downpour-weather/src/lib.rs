@@ -27,10 +27,12 @@ mod drips;
 mod fault;
 mod file;
 mod glass;
+mod keys;
 mod lamps;
 mod lightning;
 mod load;
 mod models;
+mod presets;
 mod puddle;
 mod quantity;
 mod rain;
@@ -51,13 +53,15 @@ pub use camera::{Camera, CameraPath, CameraPose, FAR_M, FOV_RAD, NEAR_M, Observe
 pub use downpour_scene::uri::RelativePath;
 pub use drips::{DripPoint, Drips};
 pub use glass::{Pane, PaneFocus, PaneFresnel, PaneShadow};
+pub use keys::WeatherKeys;
 pub use lamps::Lamp;
 pub use lightning::{
     Flash, FlashExposure, FlashLight, Lightning, MAX_FLASHES, MAX_STROKES, MAX_STROKES_PER_SECOND, Storm,
     Stroke, StrokePulse,
 };
-pub use load::{Loaded, Roots, load};
+pub use load::{Loaded, Roots, lamps_at, load};
 pub use models::{Model, Repeat};
+pub use presets::PRESETS;
 pub use puddle::{MAX_ALL_PUDDLE_CELLS, MAX_PUDDLE_CELLS, Puddle, PuddleFill, PuddleShape};
 pub use rain::{
     RAIN_BOX_M, Rain, RainBounce, RainCylinder, RainDrag, RainDropLight, RainDropShape, RainExtinction,
@@ -149,6 +153,9 @@ pub struct Weather {
     pub drips: Drips,
     /// Width and height of the picture, in pixels.
     pub size: [u32; 2],
+    /// Values that change over time: [`Weather::at`]. The other fields hold those of time 0. Wind, speed of the air at a pane,
+    /// wipers and the path of the camera have their own keys.
+    pub keys: WeatherKeys,
 }
 
 impl Default for Weather {
@@ -172,6 +179,7 @@ impl Default for Weather {
             splashes: Splashes::default(),
             drips: Drips::default(),
             size: [1280, 720],
+            keys: WeatherKeys::default(),
         }
     }
 }

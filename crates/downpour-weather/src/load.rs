@@ -31,6 +31,8 @@ pub struct Loaded {
     pub sky: SkyMap,
     /// The sun, if there is one.
     pub sun: Option<Sun>,
+    /// Map of a file and its sun, without exposure and intensity; `None` unless these change over time.
+    pub unscaled: Option<Box<(SkyMap, Option<Sun>)>>,
     /// Picture of the depth of each puddle that is painted.
     pub masks: Vec<Option<Picture>>,
     /// Model that drops are drawn as, if any.
@@ -40,6 +42,19 @@ pub struct Loaded {
 }
 
 impl Loaded {
+    /// Sky and sun of a weather at a time in seconds; `None` if they do not change. There is a sun at all times or at none.
+    #[must_use]
+    pub fn sky_at(&self, weather: &Weather, time_s: f64) -> Option<(SkyMap, Option<Sun>)> {
+        if !weather.keys.has_sky() {
+            return None;
+        }
+        let now = weather.at(time_s);
+        Some(match self.unscaled.as_deref() {
+            Some((map, sun)) => scaled_sky(&now, map, sun.as_ref()),
+            None => (formula(&now).unwrap_or_else(|| self.sky.clone()), directional(&now.sun)),
+        })
+    }
+
     /// True if an animation of a model plays.
     #[must_use]
     pub fn is_animated(&self) -> bool {
@@ -115,7 +130,8 @@ impl Files for Beside<'_> {
 pub fn load(weather: &Weather, files: &dyn Files, budget: &mut Budget) -> Result<Loaded, SceneError> {
     let mut remaining = *budget;
     let mut warnings = Warnings::default();
-    let (mut sky, sun) = lights_of_the_sky(weather, files, &mut remaining, &mut warnings)?;
+    let mut unscaled = None;
+    let (mut sky, sun) = lights_of_the_sky(weather, files, &mut remaining, &mut warnings, &mut unscaled)?;
     let mut scene = Scene { name: weather.name.clone(), ..Scene::default() };
     let mut animations = Vec::new();
     let mut known = BTreeMap::new();
@@ -132,7 +148,7 @@ pub fn load(weather: &Weather, files: &dyn Files, budget: &mut Budget) -> Result
     let of_drops = drop_model.iter().flat_map(|model| model.warnings.clone()).collect();
     let warnings =
         [std::mem::take(&mut sky.warnings), scene.warnings.clone(), of_drops, warnings.finish()].concat();
-    Ok(Loaded { scene, animations, sky, sun, masks, drop_model, warnings })
+    Ok(Loaded { scene, animations, sky, sun, unscaled, masks, drop_model, warnings })
 }
 
 /// Triangles that drops are drawn as: all of them, or an error.
@@ -186,12 +202,15 @@ fn lights_of_the_sky(
     files: &dyn Files,
     budget: &mut Budget,
     warnings: &mut Warnings,
+    unscaled: &mut Option<Box<(SkyMap, Option<Sun>)>>,
 ) -> Result<(SkyMap, Option<Sun>), SceneError> {
-    let scale = weather.sky.scale;
-    let scaled = |color: [f64; 3]| color.map(|value| narrowed(value * scale));
+    // A sky that changes is scaled from its map for each picture.
+    let is_keyed = weather.keys.has_sky();
+    let scale = if is_keyed { 1.0 } else { weather.sky.scale };
     let (mut sky, yaw) = match &weather.sky.source {
-        SkySource::Uniform(color) => (SkyMap::uniform(scaled(*color)), 0.0),
-        SkySource::Overcast(zenith) => (SkyMap::overcast(scaled(*zenith)).with_ground(GROUND_ALBEDO), 0.0),
+        SkySource::Uniform(_) | SkySource::Overcast(_) => {
+            (formula(weather).unwrap_or_else(|| SkyMap::uniform([0.0; 3])), 0.0)
+        }
         SkySource::File { file, yaw } => {
             let name = file.as_str();
             let read = |budget: &mut Budget| {
@@ -208,15 +227,11 @@ fn lights_of_the_sky(
     let mut sun = match weather.sun {
         SunSource::None => None,
         SunSource::FromSky | SunSource::FromSkyIfAny => sky.extract_sun(SUN_THRESHOLD),
-        SunSource::Directional { towards, illuminance_lux, color, angular_radius } => {
-            let sun = Sun {
-                direction: towards.map(narrowed),
-                irradiance_rgb: color.map(|part| narrowed(part * illuminance_lux)),
-                angular_radius: narrowed(angular_radius),
-            };
-            return Ok((turned(sky, yaw), Some(sun)));
-        }
+        SunSource::Directional { .. } => directional(&weather.sun),
     };
+    if let SunSource::Directional { .. } = weather.sun {
+        return Ok(keep(weather, turned(sky, yaw), sun, unscaled));
+    }
     if let Some(sun) = &mut sun {
         let [x, y, z] = sun.direction.map(f64::from);
         let (s, c) = (ops::sin(yaw), ops::cos(yaw));
@@ -224,7 +239,55 @@ fn lights_of_the_sky(
     } else if weather.sun == SunSource::FromSky {
         warnings.add(WarningKind::Ignored, "sun", || "the sky map has no compact bright source".into());
     }
-    Ok((turned(sky, yaw), sun))
+    Ok(keep(weather, turned(sky, yaw), sun, unscaled))
+}
+
+/// Keeps a map whose scale changes, and returns what it is at time 0.
+fn keep(
+    weather: &Weather,
+    sky: SkyMap,
+    sun: Option<Sun>,
+    unscaled: &mut Option<Box<(SkyMap, Option<Sun>)>>,
+) -> (SkyMap, Option<Sun>) {
+    if !weather.keys.has_sky() || !matches!(weather.sky.source, SkySource::File { .. }) {
+        return (sky, sun);
+    }
+    let (map, sun) = &**unscaled.insert(Box::new((sky, sun)));
+    scaled_sky(weather, map, sun.as_ref())
+}
+
+/// A map of a file and its sun, by the scale of a weather.
+fn scaled_sky(weather: &Weather, map: &SkyMap, sun: Option<&Sun>) -> (SkyMap, Option<Sun>) {
+    let scale = weather.sky.scale;
+    let scaled = |value: f32| narrowed(f64::from(value) * scale);
+    let mut sky = map.clone();
+    for pixel in &mut sky.radiance {
+        *pixel = pixel.map(|value| scaled(value).min(sky::MAX_RADIANCE));
+    }
+    let of_map = || sun.map(|sun| Sun { irradiance_rgb: sun.irradiance_rgb.map(scaled), ..*sun });
+    (sky, directional(&weather.sun).or_else(of_map))
+}
+
+/// Sky by a formula; `None` for a map.
+fn formula(weather: &Weather) -> Option<SkyMap> {
+    let scaled = |color: [f64; 3]| color.map(|value| narrowed(value * weather.sky.scale));
+    match weather.sky.source {
+        SkySource::Uniform(color) => Some(SkyMap::uniform(scaled(color))),
+        SkySource::Overcast(zenith) => Some(SkyMap::overcast(scaled(zenith)).with_ground(GROUND_ALBEDO)),
+        SkySource::File { .. } => None,
+    }
+}
+
+/// A sun apart from the sky map.
+fn directional(sun: &SunSource) -> Option<Sun> {
+    let SunSource::Directional { towards, illuminance_lux, color, angular_radius } = *sun else {
+        return None;
+    };
+    Some(Sun {
+        direction: towards.map(narrowed),
+        irradiance_rgb: color.map(|part| narrowed(part * illuminance_lux)),
+        angular_radius: narrowed(angular_radius),
+    })
 }
 
 fn turned(sky: SkyMap, yaw: f64) -> SkyMap {
@@ -374,6 +437,16 @@ fn copy(scene: &mut Scene, part: Range<usize>, animations: Range<usize>, transfo
             channel
         }));
     }
+}
+
+/// The lamps of a weather file at a time in seconds, in their order, as a scene of nothing else.
+#[must_use]
+pub fn lamps_at(weather: &Weather, time_s: f64) -> Scene {
+    let mut scene = Scene::default();
+    for lamp in &weather.at(time_s).lights {
+        add_lamp(&mut scene, lamp);
+    }
+    scene
 }
 
 /// Adds a lamp to the scene.

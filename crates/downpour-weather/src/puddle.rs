@@ -3,13 +3,16 @@
 use super::fault::Positions;
 use super::file::path;
 use super::quantity::{
-    AttenuationM, Exactly, FieldCellMm, In, Influence, PositionM, PuddleDepthMm, PuddleM, PuddleReachM,
+    AttenuationM, Exactly, FieldCellMm, Fill, In, Influence, PositionM, PuddleDepthMm, PuddleM, PuddleReachM,
     ReliefMm, RippleScale, SeepageMmH, Tint, TurnDeg,
 };
+use super::wind::keys::NumberKeys;
 use downpour_scene::error::SceneError;
 use downpour_scene::uri::RelativePath;
+use downpour_wind::Keyed;
 use serde::Deserialize;
-use serde::de::{Deserializer, Error, Visitor};
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{Deserializer, Error, IntoDeserializer, SeqAccess, Visitor};
 use std::fmt;
 
 /// Maximum number of cells along an edge of a puddle's map.
@@ -104,14 +107,17 @@ pub(super) struct PuddleTable {
 }
 
 impl Puddle {
+    /// The puddle at time 0, and its fill over time if it is given.
     pub(super) fn checked(
         index: usize,
         table: &PuddleTable,
         positions: &Positions<'_>,
-    ) -> Result<Self, SceneError> {
+    ) -> Result<(Self, Option<Keyed<f64>>), SceneError> {
         let at = |name: &str| format!("puddle[{index}].{name}");
         let size = table.size_m.numbers();
         let meters = |given: Option<f64>, default_mm: f64| given.unwrap_or(default_mm) * 1.0e-3;
+        let given = table.fill.as_ref().and_then(|fill| fill.0.as_ref());
+        let keys = given.map(|fill| fill.keyed(&at("fill"), positions)).transpose()?;
         let shape = if let Some(mask) = &table.mask {
             for (name, given) in [
                 ("fill", table.fill.is_some()),
@@ -137,7 +143,7 @@ impl Puddle {
                 return Err(positions.bad(&at("cell_mm"), format!("{width} x {depth} cells"), allowed));
             }
             PuddleShape::Found {
-                fill: fill(table, &at, positions)?,
+                fill: fill(table, keys.as_ref(), &at, positions)?,
                 min_depth: meters(table.min_depth_mm.map(|mm| mm.0), 1.5),
                 relief: meters(table.relief_mm.map(|mm| mm.0), 2.2),
                 seed: table.seed.unwrap_or(0),
@@ -145,7 +151,7 @@ impl Puddle {
             }
         };
         let usual_depth_mm = if table.mask.is_some() { 12.0 } else { 100.0 };
-        Ok(Self {
+        let puddle = Self {
             middle: table.position_m.numbers(),
             size,
             turn: table.turn_deg.map_or(0.0, |deg| deg.0.to_radians()),
@@ -157,39 +163,41 @@ impl Puddle {
             ripple_influence: table.ripple_influence.map_or(1.0, |influence| influence.0),
             attenuation_length: table.attenuation_length_m.map_or(0.25, |m| m.0),
             color: table.color.map_or([0.12, 0.105, 0.08], Exactly::numbers),
-        })
+        };
+        Ok((puddle, keys))
     }
 }
 
 /// The water in the hollows of a puddle that is found.
 fn fill(
     table: &PuddleTable,
+    keys: Option<&Keyed<f64>>,
     at: &impl Fn(&str) -> String,
     positions: &Positions<'_>,
 ) -> Result<PuddleFill, SceneError> {
     let rain =
         || PuddleFill::Rain { seepage: table.seepage_mm_h.map_or(0.0, |rate| rate.0 * 1.0e-3 / 3600.0) };
-    match table.fill {
-        Some(FillKey(Some(_))) if table.seepage_mm_h.is_some() => {
+    match keys {
+        Some(_) if table.seepage_mm_h.is_some() => {
             Err(positions.bad(&at("seepage_mm_h"), "beside a fill that is given", "fill = \"rain\""))
         }
-        Some(FillKey(Some(part))) => Ok(PuddleFill::Part(part)),
-        Some(FillKey(None)) | None => Ok(rain()),
+        Some(part) => Ok(PuddleFill::Part(part.at(0.0))),
+        None => Ok(rain()),
     }
 }
 
-/// A fraction, or `None` for the rain.
-#[derive(Clone, Copy, Debug)]
-struct FillKey(Option<f64>);
+/// A fraction, or keys of it, or `None` for the rain.
+#[derive(Debug)]
+struct FillKey(Option<NumberKeys<Fill>>);
 
 impl<'de> Deserialize<'de> for FillKey {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Written;
-        impl Visitor<'_> for Written {
+        impl<'de> Visitor<'de> for Written {
             type Value = FillKey;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("\"rain\", or a number from 0 to 1")
+                f.write_str("\"rain\", a number from 0 to 1, or keys [[time in s, value], ...]")
             }
 
             fn visit_str<E: Error>(self, text: &str) -> Result<FillKey, E> {
@@ -200,14 +208,15 @@ impl<'de> Deserialize<'de> for FillKey {
             }
 
             fn visit_f64<E: Error>(self, part: f64) -> Result<FillKey, E> {
-                if (0.0..=1.0).contains(&part) {
-                    return Ok(FillKey(Some(part)));
-                }
-                Err(E::custom(format_args!("{part}; allowed: \"rain\", or 0 to 1")))
+                NumberKeys::deserialize(part.into_deserializer()).map(|fill| FillKey(Some(fill)))
             }
 
             fn visit_i64<E: Error>(self, part: i64) -> Result<FillKey, E> {
                 self.visit_f64(part as f64)
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<FillKey, A::Error> {
+                NumberKeys::deserialize(SeqAccessDeserializer::new(seq)).map(|fill| FillKey(Some(fill)))
             }
         }
         deserializer.deserialize_any(Written)

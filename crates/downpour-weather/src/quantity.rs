@@ -48,6 +48,7 @@ ranges! {
     Influence: 0.0, 10.0, "0 to 10";
     AttenuationM: 0.001, 1000.0, "0.001 to 1000 m";
     Fraction: 0.0, 1.0, "0 to 1";
+    Fill: 0.0, 1.0, "\"rain\", or 0 to 1";
     DropSize: 0.05, 1.0, "0.05 to 1";
     ShortS: 0.01, 10.0, "0.01 to 10 s";
     Brightness: 0.0, 1e9, "0 to 1e9";
@@ -152,7 +153,7 @@ impl<'de, R: Range> Deserialize<'de> for In<R> {
 
 struct Number<R>(PhantomData<R>);
 
-impl<R: Range> Visitor<'_> for Number<R> {
+impl<'de, R: Range> Visitor<'de> for Number<R> {
     type Value = In<R>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -161,6 +162,13 @@ impl<R: Range> Visitor<'_> for Number<R> {
 
     fn visit_f64<E: Error>(self, value: f64) -> Result<In<R>, E> {
         In::checked(value)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, _: A) -> Result<In<R>, A::Error> {
+        Err(A::Error::custom(format_args!(
+            "an array: this key has no keyframes{ALLOWED}a number, {}",
+            R::WORDS
+        )))
     }
 
     fn visit_i64<E: Error>(self, value: i64) -> Result<In<R>, E> {

@@ -16,7 +16,7 @@ use downpour_wind::{
     WindPart,
 };
 use glam::DVec3;
-use keys::{NumberKeys, VectorKeys, keyed};
+use keys::{NumberKeys, VectorKeys, keyed, vector_or};
 use serde::Deserialize;
 
 /// Default core radius, in meters: three cells of the default grid.
@@ -287,16 +287,6 @@ fn turning(
     keyed(keys, path, positions)
 }
 
-/// Keys of the file, or a constant default.
-fn or_still<R>(
-    given: Option<&VectorKeys<R>>,
-    default: DVec3,
-    path: &str,
-    positions: &Positions<'_>,
-) -> Result<Keyed<DVec3>, SceneError> {
-    given.map_or_else(|| Ok(default.into()), |given| given.keyed(path, positions))
-}
-
 impl<R> SingularityTable<R> {
     fn part(&self, path: &str, positions: &Positions<'_>) -> Result<KeyedSingularity, SceneError> {
         let key = |name: &str| format!("{path}.{name}");
@@ -320,8 +310,8 @@ impl<R> SingularityTable<R> {
                 Some(CoreWord::LambOseen) => WindCore::LambOseen,
             },
             strength,
-            center: or_still(self.center_m.as_ref(), DVec3::ZERO, &key("center_m"), positions)?,
-            axis: or_still(self.axis.as_ref(), DVec3::Y, &key("axis"), positions)?,
+            center: vector_or(self.center_m.as_ref(), DVec3::ZERO, &key("center_m"), positions)?,
+            axis: vector_or(self.axis.as_ref(), DVec3::Y, &key("axis"), positions)?,
             core_radius: core(self.core_m.as_ref(), &key("core_m"), positions)?,
         })
     }
@@ -345,8 +335,8 @@ impl TornadoTable {
         Ok(WindPart::Tornado(KeyedTornado {
             circulation: self.circulation_m2_s.keyed(&key("circulation_m2_s"), positions)?,
             discharge,
-            base: or_still(self.base_m.as_ref(), DVec3::ZERO, &key("base_m"), positions)?,
-            axis: or_still(self.axis.as_ref(), DVec3::Y, &key("axis"), positions)?,
+            base: vector_or(self.base_m.as_ref(), DVec3::ZERO, &key("base_m"), positions)?,
+            axis: vector_or(self.axis.as_ref(), DVec3::Y, &key("axis"), positions)?,
             height: self.height_m.keyed(&key("height_m"), positions)?,
             core_radius: core(self.core_m.as_ref(), &key("core_m"), positions)?,
         }))

@@ -349,7 +349,7 @@ fn t1_t2_rates_are_finite_and_in_range() {
         "line 2, column 13: rain.rate_mm_h: invalid type: string \"10\"; allowed: a number, 0, or 0.001 to 500 mm/h",
     );
     refused("rain = 5", 2, "line 1, column 8: rain: invalid type: integer `5`");
-    refused("[rain]\nrate_mm_h = [1]", 2, "invalid type: sequence");
+    refused("[rain]\nrate_mm_h = [1]", 2, "an array: this key has no keyframes");
     refused("[rain]\nrate_mm_h = 2020-01-01", 2, "line 2");
 }
 
@@ -460,7 +460,7 @@ fn t11_keys_are_known_and_stand_once() {
     );
     says(
         "[rian]\nrate_mm_h = 5",
-        "line 1, column 2: rian: unknown key \"rian\", perhaps rain; allowed: rain, sky, sun, camera, model, light, \
+        "line 1, column 2: rian: unknown key \"rian\", perhaps rain; allowed: preset, rain, sky, sun, camera, model, light, \
          flash, lightning, wind, gusts, turbulence, wind_field, streaks, glass, puddle, wetness, output",
     );
     refused("[camera]\nfov_rad = 1", 2, "unknown key \"fov_rad\", perhaps fov_deg;");

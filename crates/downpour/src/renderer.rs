@@ -17,7 +17,7 @@ use std::time::Instant;
 
 use crate::shower::{MovingEye, MovingScenery, Scenery, Shower, Still};
 use downpour_atlas::{StreakAtlas, StreakPick};
-use downpour_render::camera::check_size;
+use downpour_render::camera::{Viewpoint, check_size};
 use downpour_render::glass::WetPane;
 use downpour_render::picture::{PictureOptions, noise_seed};
 use downpour_render::rain::light::{DropLightForm, DropLightOptions};
@@ -223,7 +223,8 @@ impl Renderer {
         Ok(())
     }
 
-    /// The factor from radiance to the pixels of a frame: that of the first frame, unless it was set.
+    /// The factor from radiance to the pixels of a frame: that of the first frame, unless it was set. Keys of
+    /// `camera.exposure_ev` multiply it in each frame ([`Weather::exposure_factor`]).
     #[must_use]
     pub fn exposure(&self) -> Option<f32> {
         self.exposure
@@ -314,7 +315,7 @@ impl Renderer {
             drops,
             medium,
             measured_rate_mm_h,
-            exposure,
+            exposure: exposure * self.weather.exposure_factor(time_s),
             truth,
         })
     }
@@ -356,7 +357,11 @@ impl Renderer {
             None => {
                 let first_s = self.options.first_s.min(time_s);
                 Water {
-                    pane: self.drawer.pane(&self.weather, &self.first.viewpoint, first_s)?,
+                    pane: self.drawer.pane(
+                        &self.weather,
+                        &widest(&self.first.viewpoint, &self.weather),
+                        first_s,
+                    )?,
                     ground: WetGround::new(&self.weather, &self.loaded, &self.first, first_s)?,
                     time_s,
                 }
@@ -413,7 +418,7 @@ impl Renderer {
                 form,
                 capture_size: form.capture_size(),
                 medium,
-                exposure: Exposure::of_weather(&self.weather, stage.motion, time_s),
+                exposure: Exposure::of_weather(&self.weather.at(time_s), stage.motion, time_s),
                 light: DropLightOptions::of_weather(&self.weather),
                 ..RainOptions::default()
             },
@@ -448,8 +453,16 @@ fn scenery<'a>(first: &'a Stage, weather: &'a Weather, loaded: &'a Loaded) -> Bo
     }
     match &weather.camera.path {
         Some(path) if !path.is_still() => Box::new(MovingEye { stage: first, weather, loaded }),
+        // Light or field of view change.
+        _ if !weather.keys.is_empty() => Box::new(MovingEye { stage: first, weather, loaded }),
         _ => Box::new(Still(first)),
     }
+}
+
+/// The viewpoint with the largest field of view that keys give it: a pane fills it at all times.
+fn widest(viewpoint: &Viewpoint, weather: &Weather) -> Viewpoint {
+    let fov_y = weather.keys.max_fov().map_or(viewpoint.fov_y, |fov| fov as f32);
+    Viewpoint { fov_y, ..*viewpoint }
 }
 
 /// # Errors

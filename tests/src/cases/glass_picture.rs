@@ -185,6 +185,7 @@ fn pane(keys: &str) -> GlassPicture {
         animations: Vec::new(),
         sky,
         sun,
+        unscaled: None,
         masks: Vec::new(),
         drop_model: None,
         warnings: Vec::new(),

@@ -44,6 +44,7 @@ fn loaded(scene: Scene) -> Loaded {
         animations: Vec::new(),
         sky,
         sun: None,
+        unscaled: None,
         masks: Vec::new(),
         drop_model: None,
         warnings: Vec::new(),

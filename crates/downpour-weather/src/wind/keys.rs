@@ -78,6 +78,26 @@ impl<R> VectorKeys<R> {
     }
 }
 
+/// The number over time, or a constant default.
+pub(crate) fn number_or<R>(
+    given: Option<&NumberKeys<R>>,
+    default: f64,
+    path: &str,
+    positions: &Positions<'_>,
+) -> Result<Keyed<f64>, SceneError> {
+    given.map_or_else(|| Ok(default.into()), |given| given.keyed(path, positions))
+}
+
+/// The vector over time, or a constant default.
+pub(crate) fn vector_or<R>(
+    given: Option<&VectorKeys<R>>,
+    default: DVec3,
+    path: &str,
+    positions: &Positions<'_>,
+) -> Result<Keyed<DVec3>, SceneError> {
+    given.map_or_else(|| Ok(default.into()), |given| given.keyed(path, positions))
+}
+
 /// `[time, value]`.
 struct Key<T>(f64, T);
 
@@ -131,6 +151,14 @@ impl<'de, R: Range> Visitor<'de> for NumberOrKeys<R> {
     }
 
     fn visit_u64<E: Error>(self, value: u64) -> Result<Moving<f64>, E> {
+        self.visit_f64(value as f64)
+    }
+
+    fn visit_i128<E: Error>(self, value: i128) -> Result<Moving<f64>, E> {
+        self.visit_f64(value as f64)
+    }
+
+    fn visit_u128<E: Error>(self, value: u128) -> Result<Moving<f64>, E> {
         self.visit_f64(value as f64)
     }
 

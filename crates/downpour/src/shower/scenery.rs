@@ -66,7 +66,7 @@ impl Scenery for MovingScenery<'_> {
     }
 }
 
-/// A scene that stands still, before an eye that moves.
+/// A scene that stands still, before an eye that moves or in a light that changes.
 #[derive(Clone, Copy, Debug)]
 pub struct MovingEye<'a> {
     /// The scene, seen at any time.
@@ -83,7 +83,7 @@ impl Scenery for MovingEye<'_> {
     }
 
     fn view(&self, time_s: f64) -> Result<View, StageError> {
-        Stage::view_at(self.weather, self.loaded, time_s)
+        self.stage.seen_view_at(self.weather, self.loaded, time_s)
     }
 
     fn stage(&self, time_s: f64) -> Result<Cow<'_, Stage>, StageError> {

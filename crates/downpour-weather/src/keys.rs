@@ -1,0 +1,130 @@
+//! Values of a weather that change over time.
+
+use super::camera::CameraKeys;
+use super::lamps::LampKeys;
+use super::sky::{SkyKeys, SunKeys};
+use super::{PuddleFill, PuddleShape, Weather};
+use downpour_wind::Keyed;
+use std::borrow::Cow;
+
+/// Values of a weather that change over time; empty for a weather without keys.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WeatherKeys {
+    camera: CameraKeys,
+    sky: Option<SkyKeys>,
+    sun: Option<SunKeys>,
+    /// Index of each lamp that changes.
+    lamps: Vec<(usize, LampKeys)>,
+    /// Index of each puddle whose fill changes.
+    fills: Vec<(usize, Keyed<f64>)>,
+}
+
+impl WeatherKeys {
+    pub(super) fn new(
+        camera: CameraKeys,
+        sky: SkyKeys,
+        sun: Option<SunKeys>,
+        lamps: Vec<LampKeys>,
+        fills: Vec<Option<Keyed<f64>>>,
+    ) -> Self {
+        let lamps = lamps.into_iter().enumerate();
+        let fills = fills.into_iter().enumerate();
+        Self {
+            camera: camera.moving(),
+            sky: sky.moving(),
+            sun: sun.and_then(SunKeys::moving),
+            lamps: lamps.filter_map(|(i, lamp)| Some((i, lamp.moving()?))).collect(),
+            fills: fills
+                .filter_map(|(i, fill)| Some((i, fill.filter(|fill| fill.keys().len() > 1)?)))
+                .collect(),
+        }
+    }
+
+    /// True if no value changes.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// True if the light of the sky or the sun changes.
+    #[must_use]
+    pub fn has_sky(&self) -> bool {
+        self.sky.is_some() || self.sun.is_some()
+    }
+
+    /// True if the field of view changes.
+    #[must_use]
+    pub fn has_fov(&self) -> bool {
+        self.camera.fov_deg.is_some()
+    }
+
+    /// Indices of the lamps that change.
+    pub fn lamps(&self) -> impl Iterator<Item = usize> {
+        self.lamps.iter().map(|&(index, _)| index)
+    }
+
+    /// True if the fill of a puddle changes.
+    #[must_use]
+    pub fn has_fill(&self, puddle: usize) -> bool {
+        self.fills.iter().any(|&(index, _)| index == puddle)
+    }
+
+    /// Largest vertical field of view at any time, in radians, if it changes.
+    #[must_use]
+    pub fn max_fov(&self) -> Option<f64> {
+        let fov = self.camera.fov_deg.as_ref()?;
+        Some(fov.keys().iter().fold(0.0, |most: f64, &(_, fov)| most.max(fov)).to_radians())
+    }
+}
+
+impl Weather {
+    /// The weather at a time in seconds: all values are those of the time. The weather itself if none changes.
+    ///
+    /// ```
+    /// use downpour_weather::Weather;
+    /// let weather = Weather::parse("dusk.toml", "[sky]\nintensity = [[0, 1], [60, 0.1]]")?;
+    /// assert_eq!([0.0, 30.0, 90.0].map(|time| weather.at(time).sky.scale), [1.0, 0.55, 0.1]);
+    /// # Ok::<(), downpour_scene::SceneError>(())
+    /// ```
+    #[must_use]
+    pub fn at(&self, time_s: f64) -> Cow<'_, Self> {
+        if self.keys.is_empty() {
+            return Cow::Borrowed(self);
+        }
+        let mut weather = self.clone();
+        weather.camera = weather.camera.at(&self.keys.camera, time_s);
+        if let Some(sky) = &self.keys.sky {
+            weather.sky = weather.sky.at(sky, time_s);
+        }
+        if let Some(sun) = &self.keys.sun {
+            weather.sun = sun.at(time_s);
+        }
+        for (index, keys) in &self.keys.lamps {
+            if let Some(lamp) = weather.lights.get_mut(*index) {
+                *lamp = lamp.at(keys, time_s);
+            }
+        }
+        for (index, keys) in &self.keys.fills {
+            if let Some(PuddleShape::Found { fill, .. }) =
+                weather.puddles.get_mut(*index).map(|p| &mut p.shape)
+            {
+                *fill = PuddleFill::Part(keys.at(time_s));
+            }
+        }
+        Cow::Owned(weather)
+    }
+
+    /// Factor of the exposure of a picture at a time in seconds, over that of the automatic exposure with
+    /// `camera.exposure_ev`: 1 without keys.
+    #[must_use]
+    pub fn exposure_factor(&self, time_s: f64) -> f32 {
+        let Some(keys) = &self.keys.camera.exposure_ev else { return 1.0 };
+        downpour_math::ops::exp2(stops(keys.at(time_s) - self.camera.exposure_ev))
+    }
+}
+
+/// Stops in single precision.
+#[expect(clippy::cast_possible_truncation, reason = "within 60 stops")]
+fn stops(value: f64) -> f32 {
+    value as f32
+}
