@@ -45,7 +45,9 @@ use downpour_scene::sandbox::open_named;
 use downpour_wind::Wind;
 use std::path::Path;
 
-pub use camera::{Camera, CameraPath, CameraPose, FAR_M, FOV_RAD, NEAR_M, Observer, PERSISTENCE_S};
+pub use camera::{
+    Camera, CameraPath, CameraPose, FAR_M, FOV_RAD, NEAR_M, Observer, PERSISTENCE_S, ToneCurve,
+};
 pub use downpour_scene::uri::RelativePath;
 pub use glass::{Pane, PaneFocus, PaneFresnel, PaneShadow};
 pub use lamps::Lamp;

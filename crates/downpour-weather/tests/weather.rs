@@ -10,7 +10,7 @@ use downpour_drop::fall_speed::FallSpeedModel;
 use downpour_scene::{Budget, SceneError};
 use downpour_weather::{
     Camera, CameraPose, Lamp, Observer, Rain, RainBounce, RainCylinder, RainDrag, RainDropLight, RainVolume,
-    Repeat, Sky, SkySource, SunSource, Weather,
+    Repeat, Sky, SkySource, SunSource, ToneCurve, Weather,
 };
 use effort::measured;
 use exit_code::ExitCode as _;
@@ -79,6 +79,7 @@ fov_deg = 60
 near_m = 0.1
 far_m = 500
 exposure_ev = -2
+tone = "khronos-neutral"
 shutter_s = 0.01
 
 [[model]]
@@ -217,6 +218,8 @@ fn an_empty_file_is_the_default() {
     assert_eq!(Sky::default().source, SkySource::Overcast([0.9, 0.95, 1.0]));
     assert_eq!((Camera::default().path, Camera::default().shutter), (None, 1.0 / 60.0));
     assert_eq!(Camera::default().observer, Observer::Camera);
+    assert_eq!(Camera::default().tone, ToneCurve::Hue);
+    assert_eq!(parse(ALL).unwrap().camera.tone, ToneCurve::KhronosNeutral);
     let eye = |more: &str| parse(&format!("[camera]\nobserver = 'eye'\n{more}")).unwrap().camera;
     assert_eq!((eye("").observer, eye("").shutter), (Observer::Eye, 0.075));
     assert_eq!(eye("persistence_s = 0.09").shutter, 0.09);
@@ -480,6 +483,7 @@ fn t11_keys_are_known_and_stand_once() {
         2,
         "camera.shutter_s: with observer = \"eye\"",
     );
+    refused("[camera]\ntone = \"channel\"", 2, "camera.tone");
     refused("[camera]\naperture_mm = nan", 2, "camera.aperture_mm");
     refused("[camera]\nfocus_m = 0", 2, "0.01 to 1e7 m");
     refused("[streaks]\nsamples = 0", 2, "streaks.samples");

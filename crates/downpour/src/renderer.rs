@@ -313,6 +313,7 @@ impl Renderer {
             medium,
             measured_rate_mm_h,
             exposure,
+            tone: self.weather.camera.tone,
             truth,
         })
     }

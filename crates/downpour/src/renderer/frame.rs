@@ -6,7 +6,7 @@ use std::time::Instant;
 use downpour_render::file::{layer_channels, write_exr, write_exr_channels, write_png};
 use downpour_render::picture::Picture;
 use downpour_render::rain::RainMedium;
-use downpour_render::tone::tone_picture;
+use downpour_render::tone::{ToneCurve, tone_picture};
 use downpour_sim::field::VisibleDrops;
 
 use super::RendererError;
@@ -30,6 +30,8 @@ pub struct Frame {
     pub measured_rate_mm_h: Option<f64>,
     /// The factor from radiance to [`Frame::pixels`].
     pub exposure: f32,
+    /// Tone curve of [`Frame::pixels`].
+    pub tone: ToneCurve,
     /// Truth about its pixels, where it was asked for.
     pub truth: Option<Truth>,
     /// Triangles of the scene, all copies counted.
@@ -54,6 +56,7 @@ pub struct PendingFrame {
     pub(super) medium: RainMedium,
     pub(super) measured_rate_mm_h: Option<f64>,
     pub(super) exposure: f32,
+    pub(super) tone: ToneCurve,
     pub(super) truth: Option<Box<TruthOf>>,
 }
 
@@ -79,6 +82,7 @@ impl PendingFrame {
             medium: self.medium,
             measured_rate_mm_h: self.measured_rate_mm_h,
             exposure: self.exposure,
+            tone: self.tone,
             triangles: self.triangles,
             begin_ms: self.begin_ms,
             frame_ms: self.begin.elapsed().as_secs_f64() * 1.0e3,
@@ -102,7 +106,7 @@ impl Frame {
     /// The picture to look at, sRGB, rows from the top.
     #[must_use]
     pub fn pixels(&self) -> Vec<[u8; 3]> {
-        tone_picture(&self.radiance(), self.exposure)
+        tone_picture(&self.radiance(), self.exposure, self.tone)
     }
 
     /// The bytes of a PNG of [`Frame::pixels`].
