@@ -35,7 +35,8 @@ fn picture(
     form: RefractionForm,
 ) -> Result<Picture, Box<dyn std::error::Error>> {
     let rain = RainOptions { form, capture_size: 128, capture_grid: 1, ..RainOptions::default() };
-    let options = PictureOptions { size: SIZE, grid: 1, sky_rays: 0, seed: 0, rain };
+    let options =
+        PictureOptions { size: SIZE, grid: 1, sky_rays: 0, seed: 0, rain, ..PictureOptions::default() };
     Ok(render_picture(scene, &viewpoint(), drops, &DropMasks::trace(1.333)?, &options)?)
 }
 

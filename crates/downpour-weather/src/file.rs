@@ -2,6 +2,7 @@
 
 use super::fault::Positions;
 use super::glass::GlassTable;
+use super::glow::GlowTable;
 use super::lamps::{Lamp, LampTable};
 use super::lightning::{FlashTable, Lightning, LightningTable, MAX_FLASHES};
 use super::models::{Model, ModelTable};
@@ -38,6 +39,7 @@ struct Tables {
     wind_field: WindFieldTable,
     streaks: StreaksTable,
     glass: Option<GlassTable>,
+    glow: GlowTable,
     puddle: Vec<PuddleTable>,
     wetness: WetnessTable,
     output: OutputTable,
@@ -76,6 +78,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         wetness: Wetness::checked(&tables.wetness, &rain, &positions)?,
         lightning: Lightning::checked(&tables.lightning, &tables.flash, rain.seed, &positions)?,
         glass: tables.glass.map(|glass| glass.checked(&rain, &positions)).transpose()?,
+        glow: tables.glow.checked(),
         rain,
         drop_model,
         sun: SunSource::checked(tables.sun.as_ref(), &sky, &positions)?,

@@ -26,6 +26,7 @@ mod camera;
 mod fault;
 mod file;
 mod glass;
+mod glow;
 mod lamps;
 mod lightning;
 mod load;
@@ -50,6 +51,7 @@ pub use camera::{
 };
 pub use downpour_scene::uri::RelativePath;
 pub use glass::{Pane, PaneFocus, PaneFresnel, PaneShadow};
+pub use glow::{GLARE, Glow, GlowFilter};
 pub use lamps::Lamp;
 pub use lightning::{
     Flash, FlashExposure, FlashLight, Lightning, MAX_FLASHES, MAX_STROKES, MAX_STROKES_PER_SECOND, Storm,
@@ -134,6 +136,8 @@ pub struct Weather {
     pub streaks: Streaks,
     /// Pane in front of the camera.
     pub glass: Option<Pane>,
+    /// Light that goes beside its image.
+    pub glow: Glow,
     /// Water on the ground, in the order of the file.
     pub puddles: Vec<Puddle>,
     /// Wetness of the surfaces.
@@ -158,6 +162,7 @@ impl Default for Weather {
             wind_box: WindBox::default(),
             streaks: Streaks::default(),
             glass: None,
+            glow: Glow::default(),
             puddles: Vec::new(),
             wetness: Wetness::default(),
             size: [1280, 720],

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use downpour_render::file::{layer_channels, write_exr, write_exr_channels, write_png};
+use downpour_render::file::{glow_channels, layer_channels, write_exr, write_exr_channels, write_png};
 use downpour_render::picture::Picture;
 use downpour_render::rain::RainMedium;
 use downpour_render::tone::{ToneCurve, tone_picture};
@@ -128,7 +128,7 @@ impl Frame {
     }
 
     /// The bytes of an OpenEXR of all layers: R, G, B; clean.R, .G, .B; rain.R, .G, .B; transmittance.Y; depth.Z (metres along
-    /// the ray, 1e30 for the sky). With [`Frame::truth`] also of the drop that a pixel shows most of `drop.id_low` and
+    /// the ray, 1e30 for the sky); with glow also glow.R, .G, .B, so that `R = clean.R * transmittance.Y + rain.R + glow.R` but for panes. With [`Frame::truth`] also of the drop that a pixel shows most of `drop.id_low` and
     /// `drop.id_high` (the halves of its id), `drop.diameter_mm` (0: none), `drop.distance_m` and `drop.alpha`; and of the surface behind
     /// it `wetness.Y`, `water.depth_mm`, `motion.X` and `motion.Y` (pixels per second, to the right and down).
     ///
@@ -136,7 +136,8 @@ impl Frame {
     /// As [`Frame::png`].
     pub fn exr_layers(&self) -> Result<Vec<u8>, RendererError> {
         let ([width, height], picture) = (self.size(), &self.picture);
-        let mut channels = layer_channels(&picture.clean, &picture.rain, picture.through_glass.as_deref());
+        let mut channels = layer_channels(&picture.clean, &picture.rain, Some(&picture.radiance()));
+        channels.extend(glow_channels(&picture.glow));
         channels.extend(self.truth.as_ref().map(Truth::channels).into_iter().flatten());
         Ok(write_exr_channels([width, height], channels)?)
     }
