@@ -32,8 +32,8 @@ pub fn write_exr(width: u32, height: u32, pixels: &[[f32; 3]]) -> core::result::
 
 /// Encodes a picture with all its layers as one OpenEXR file: see [the module](self) for the channels.
 ///
-/// `clean` is radiance and distance of the scene, `rain` radiance and transmittance of the rain, `glass` the picture through a
-/// pane, if there is one.
+/// `clean` is radiance and distance of the scene, `rain` radiance and transmittance of the rain, `seen` the picture
+/// itself where it is not both together: with glow, or through a pane.
 ///
 /// # Errors
 /// As [`write_exr`].
@@ -42,9 +42,9 @@ pub fn write_exr_layers(
     height: u32,
     clean: &[[f32; 4]],
     rain: &[[f32; 4]],
-    glass: Option<&[[f32; 3]]>,
+    seen: Option<&[[f32; 3]]>,
 ) -> core::result::Result<Vec<u8>, RenderError> {
-    write_exr_channels([width, height], layer_channels(clean, rain, glass))
+    write_exr_channels([width, height], layer_channels(clean, rain, seen))
 }
 
 /// The channels of [`write_exr_layers`].
@@ -52,16 +52,16 @@ pub fn write_exr_layers(
 pub fn layer_channels(
     clean: &[[f32; 4]],
     rain: &[[f32; 4]],
-    glass: Option<&[[f32; 3]]>,
+    seen: Option<&[[f32; 3]]>,
 ) -> Vec<(&'static str, Samples)> {
     let layer = |pixels: &[[f32; 4]], k: usize| Samples::F32(pixels.iter().map(|p| p[k]).collect());
     let mut channels = Vec::new();
     for (k, name) in ["R", "G", "B"].into_iter().enumerate() {
-        let seen = match glass {
-            Some(glass) => glass.iter().map(|pixel| pixel[k]).collect(),
+        let radiance = match seen {
+            Some(seen) => seen.iter().map(|pixel| pixel[k]).collect(),
             None => through_rain(clean, rain).map(|pixel| pixel[k]).collect(),
         };
-        channels.push((name, Samples::F32(seen)));
+        channels.push((name, Samples::F32(radiance)));
     }
     for (k, name) in ["clean.R", "clean.G", "clean.B", "depth.Z"].into_iter().enumerate() {
         channels.push((name, layer(clean, k)));
@@ -70,6 +70,14 @@ pub fn layer_channels(
         channels.push((name, layer(rain, k)));
     }
     channels
+}
+
+/// The channels of a glow; none if there is none.
+#[must_use]
+pub fn glow_channels(glow: &[[f32; 4]]) -> Vec<(&'static str, Samples)> {
+    let names = if glow.is_empty() { &[][..] } else { &["glow.R", "glow.G", "glow.B"] };
+    let samples = |k: usize| Samples::F32(glow.iter().map(|pixel| pixel[k]).collect());
+    names.iter().enumerate().map(|(k, &name)| (name, samples(k))).collect()
 }
 
 /// Numbers of a channel, rows from the top.

@@ -2,6 +2,7 @@
 
 mod drop_light;
 mod glass;
+mod glow;
 mod host;
 mod medium;
 mod plate;
@@ -15,6 +16,7 @@ pub mod tiles;
 
 pub use drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
 pub use glass::{BehindGlass, GlassRenderer};
+pub use glow::{GlowPass, GlowPipeline};
 pub use host::{HostPass, HostPipeline, HostTextures};
 pub use medium::{MediumPass, MediumPipeline};
 pub use plate::{LightingOnGpu, PlateOnGpu};

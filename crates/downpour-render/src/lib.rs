@@ -4,7 +4,7 @@
 //! - [`plate`]: what rain asks of a picture, wherever it comes from; [`camera`], [`light`];
 //! - [`rain`]: drops, streaks, unresolved drops and the light of lamps on them; [`picture`] puts the layers together;
 //! - [`glass`]: rain on a pane before the camera, and the picture through it;
-//! - [`tone`] and [`mod@file`]: from radiance to a file; [`flashing`]: flashes of a clip, counted on its pixels;
+//! - [`mod@glow`]: light around lights; [`tone`] and [`mod@file`]: from radiance to a file; [`flashing`]: flashes of a clip, counted on its pixels;
 //! - [`wind_picture`]: a wind as colors and streaks.
 
 #![cfg_attr(
@@ -17,6 +17,7 @@ mod error;
 pub mod file;
 pub mod flashing;
 pub mod glass;
+pub mod glow;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
 #[doc(hidden)]
@@ -33,6 +34,7 @@ pub mod wind_picture;
 
 pub use camera::{Camera, EyeMotion, Viewpoint};
 pub use error::RenderError;
+pub use glow::Glow;
 pub use light::{Light, LightSample, LightSource};
 pub use picture::{Picture, PictureOptions, rain_layer};
 pub use plate::{Lighting, Plate};

@@ -6,6 +6,8 @@ use downpour_math::rng::rng_draw;
 use rayon::prelude::*;
 
 use crate::RenderError;
+use crate::camera::Camera;
+use crate::glow::{Glow, GlowPlan};
 use crate::plate::Plate;
 use crate::rain::list::nearest_first;
 use crate::rain::{DropMasks, Rain, RainOptions};
@@ -36,12 +38,21 @@ pub struct PictureOptions {
     pub seed: u64,
     /// Options of the drawing of drops.
     pub rain: RainOptions,
+    /// Light that goes beside its image.
+    pub glow: Glow,
 }
 
 impl Default for PictureOptions {
     /// 1280 x 720 pixels of 2 x 2 samples with a ray to the sky each.
     fn default() -> Self {
-        Self { size: [1280, 720], grid: 2, sky_rays: 1, seed: 0, rain: RainOptions::default() }
+        Self {
+            size: [1280, 720],
+            grid: 2,
+            sky_rays: 1,
+            seed: 0,
+            rain: RainOptions::default(),
+            glow: Glow::default(),
+        }
     }
 }
 
@@ -63,6 +74,8 @@ pub struct Picture {
     pub surroundings: Vec<[f32; 4]>,
     /// The scene through the rain and through a pane of glass, if there is one.
     pub through_glass: Option<Vec<[f32; 3]>>,
+    /// What glow adds to the radiance of each pixel, below 0 where it takes more than it brings; empty if nothing glows.
+    pub glow: Vec<[f32; 4]>,
     /// The passes in their order, with the milliseconds that each took.
     pub passes: Vec<(&'static str, f64)>,
     /// Use of the device that drew it; `None` on the CPU.
@@ -96,6 +109,7 @@ impl Picture {
             rain: layer,
             surroundings,
             through_glass: None,
+            glow: Vec::new(),
             passes,
             device: None,
         }
@@ -127,6 +141,25 @@ impl Picture {
                 *seen = std::array::from_fn(|k| seen[k] + light[k]);
             }
         }
+        for (glow, light) in self.glow.iter_mut().zip(&other.glow) {
+            *glow = std::array::from_fn(|k| glow[k] + light[k]);
+        }
+    }
+
+    /// Makes the glow of what is seen, through the pane of glass if there is one.
+    pub fn add_glow(&mut self, glow: &Glow, camera: &Camera) {
+        let plan = GlowPlan::new(glow, self.size, camera.pixel_angle);
+        if plan.steps.is_empty() {
+            return;
+        }
+        let made = match &self.through_glass {
+            None => plan.glow(&self.clean, &self.rain),
+            Some(seen) => {
+                let behind = seen.iter().zip(&self.clean).map(|(&[r, g, b], plate)| [r, g, b, plate[3]]);
+                plan.glow(&behind.collect::<Vec<_>>(), &vec![[0.0, 0.0, 0.0, 1.0]; seen.len()])
+            }
+        };
+        self.glow = made;
     }
 
     /// The scene through the rain with its distances: what stands behind a pane of glass.
@@ -135,14 +168,19 @@ impl Picture {
         self.clean.iter().zip(&self.rain).map(|(&clean, &rain)| compose_pixel(clean, rain)).collect()
     }
 
-    /// The scene through the rain, and through the pane of glass if there is one.
+    /// The scene through the rain, and through the pane of glass if there is one, with its glow.
     #[must_use]
     pub fn radiance(&self) -> Vec<[f32; 3]> {
-        if let Some(seen) = &self.through_glass {
-            return seen.clone();
-        }
-        let behind = self.clean.par_iter().zip(&self.rain).with_min_len(4096);
-        behind.map(|(&clean, &rain)| without_distance(compose_pixel(clean, rain))).collect()
+        let mut seen: Vec<[f32; 3]> = if let Some(seen) = &self.through_glass {
+            seen.clone()
+        } else {
+            let behind = self.clean.par_iter().zip(&self.rain).with_min_len(4096);
+            behind.map(|(&clean, &rain)| without_distance(compose_pixel(clean, rain))).collect()
+        };
+        seen.par_iter_mut().zip(&self.glow).with_min_len(4096).for_each(|(seen, glow)| {
+            *seen = std::array::from_fn(|k| seen[k] + glow[k]);
+        });
+        seen
     }
 }
 

@@ -1,14 +1,19 @@
 //! From scene-referred radiance to a picture.
 //!
-//! The curve is the neutral tone mapper of Khronos (2024): colors up to 0.8 less the toe stay as they are, brighter
-//! ones are compressed and lose saturation toward white. Exposure is a factor of 2 per stop; automatic exposure puts
+//! Colors up to 0.8 less the toe stay as they are in both curves ([`ToneCurve`]), brighter ones are compressed: by [`tone_hue`], which keeps
+//! hues, or by the neutral tone mapper of Khronos (2024, [`tone_neutral`]). Exposure is a factor of 2 per stop; automatic exposure puts
 //! the logarithmic mean of the picture at middle gray.
+
+mod hue;
 
 use std::sync::LazyLock;
 
 use downpour_math::ops;
 use glam::Vec3;
 use rayon::prelude::*;
+
+pub use downpour_weather::ToneCurve;
+pub use hue::tone_hue;
 
 const START: f32 = 0.8 - 0.04;
 const DESATURATION: f32 = 0.15;
@@ -21,19 +26,28 @@ pub fn tone_luminance(color: Vec3) -> f32 {
     color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
-/// Applies the tone curve; the result is in [0, 1].
-#[must_use]
-pub fn tone_neutral(color: Vec3) -> Vec3 {
-    let color = color.max(Vec3::ZERO);
+/// A color of no channel below 0, less what a surface of gloss reflects of white surroundings.
+fn lifted(color: Vec3) -> Vec3 {
     let least = color.min_element();
     let offset = if least < 0.08 { least - 6.25 * least * least } else { 0.04 };
-    let lifted = color - Vec3::splat(offset);
+    color - Vec3::splat(offset)
+}
+
+/// Value of a largest channel from `START` on, below 1.
+fn compressed(peak: f32) -> f32 {
+    let d = 1.0 - START;
+    1.0 - d * d / (peak + d - START)
+}
+
+/// Applies the neutral tone curve of Khronos; the result is in [0, 1].
+#[must_use]
+pub fn tone_neutral(color: Vec3) -> Vec3 {
+    let lifted = lifted(color.max(Vec3::ZERO));
     let peak = lifted.max_element();
     if peak < START {
         return lifted;
     }
-    let d = 1.0 - START;
-    let new_peak = 1.0 - d * d / (peak + d - START);
+    let new_peak = compressed(peak);
     let scaled = lifted * (new_peak / peak);
     let g = 1.0 - 1.0 / (DESATURATION * (peak - new_peak) + 1.0);
     scaled.lerp(Vec3::splat(new_peak), g)
@@ -104,12 +118,16 @@ impl Encoded {
 
 /// Converts linear radiance to an 8-bit picture.
 #[must_use]
-pub fn tone_picture(pixels: &[[f32; 3]], exposure: f32) -> Vec<[u8; 3]> {
+pub fn tone_picture(pixels: &[[f32; 3]], exposure: f32, curve: ToneCurve) -> Vec<[u8; 3]> {
     let encoded = &*ENCODED;
+    let toned = match curve {
+        ToneCurve::KhronosNeutral => tone_neutral,
+        ToneCurve::Hue => tone_hue,
+    };
     pixels
         .par_iter()
         .with_min_len(4096)
-        .map(|&pixel| tone_neutral(Vec3::from(pixel) * exposure).to_array().map(|v| encoded.of(v)))
+        .map(|&pixel| toned(Vec3::from(pixel) * exposure).to_array().map(|v| encoded.of(v)))
         .collect()
 }
 

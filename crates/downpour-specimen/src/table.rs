@@ -183,7 +183,14 @@ impl TableStreak {
             ..Exposure::default()
         };
         let of_rain = RainOptions { exposure, ..RainOptions::default() };
-        let of_picture = PictureOptions { size: options.size, grid: 1, sky_rays: 0, seed: 0, rain: of_rain };
+        let of_picture = PictureOptions {
+            size: options.size,
+            grid: 1,
+            sky_rays: 0,
+            seed: 0,
+            rain: of_rain,
+            ..PictureOptions::default()
+        };
         let frame = picture_frame(&scene, &viewpoint, &of_picture)?;
         let drop = FallingDrop {
             position: DVec3::ZERO,

@@ -5,6 +5,7 @@
 
 use downpour_render::RenderError;
 use downpour_render::camera::Viewpoint;
+use downpour_render::glow::Glow;
 use downpour_render::picture::{Picture, PictureOptions, rain_layer, timed};
 use downpour_render::plate::Plate;
 use downpour_render::rain::light::DropLightForm;
@@ -52,5 +53,11 @@ pub fn render_picture(
     let environment = timed(&mut passes, "capture", || trace_environment(scene, &frame, &rain.environment));
     let plate = Plate { camera: &camera, pixels: &clean, environment: &environment, lighting: &view };
     let layer = rain_layer(&plate, &rain, masks, &mut passes)?;
-    Ok(Picture::new(&rain, clean, layer, environment.texels, passes))
+    let mut picture = Picture::new(&rain, clean, layer, environment.texels, passes);
+    if options.glow != Glow::default() {
+        let start = std::time::Instant::now();
+        picture.add_glow(&options.glow, &camera);
+        picture.passes.push(("glow", start.elapsed().as_secs_f64() * 1.0e3));
+    }
+    Ok(picture)
 }

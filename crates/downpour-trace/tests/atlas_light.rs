@@ -73,7 +73,8 @@ fn drawn(
         ..Exposure::default()
     };
     let rain = RainOptions { capture_size: 16, exposure, light, ..RainOptions::default() };
-    let options = PictureOptions { size: SIZE, grid: 1, sky_rays: 0, seed: 0, rain };
+    let options =
+        PictureOptions { size: SIZE, grid: 1, sky_rays: 0, seed: 0, rain, ..PictureOptions::default() };
     Ok(render_picture(scene, &viewpoint(), &[drop], masks, &options)?)
 }
 

@@ -92,7 +92,14 @@ fn picture(
         present_s: FallingDrop::ALWAYS,
     };
     let size = [SIZE as u32; 2];
-    let options = PictureOptions { size, grid: 1, sky_rays: 0, seed: 0, rain: RainOptions::default() };
+    let options = PictureOptions {
+        size,
+        grid: 1,
+        sky_rays: 0,
+        seed: 0,
+        rain: RainOptions::default(),
+        ..PictureOptions::default()
+    };
     Ok(render_picture(scene, &eye, &[drop], masks, &options)?)
 }
 

@@ -47,7 +47,8 @@ fn drawn(
     let rain = RainOptions { capture_size: 16, exposure, light, ..RainOptions::default() };
     let half = 0.5 * SIZE[1] as f32 * RADIUS / (ACROSS * AWAY);
     let view = Viewpoint { eye: Vec3::ZERO, forward: Vec3::NEG_Z, up: Vec3::Y, fov_y: 2.0 * half };
-    let options = PictureOptions { size: SIZE, grid: 1, sky_rays: 0, seed: 0, rain };
+    let options =
+        PictureOptions { size: SIZE, grid: 1, sky_rays: 0, seed: 0, rain, ..PictureOptions::default() };
     let picture = render_picture(&scene, &view, &[drop], &DropMasks::trace(1.333)?, &options)?;
     Ok(picture.rain.iter().map(|pixel| pixel[0]).collect())
 }

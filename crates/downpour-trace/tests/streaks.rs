@@ -54,7 +54,7 @@ fn picture_from(
 ) -> Result<Picture, Box<dyn std::error::Error>> {
     let form = RefractionForm::Direction;
     let rain = RainOptions { form, capture_size: 128, exposure, ..RainOptions::default() };
-    let options = PictureOptions { size, grid: 1, sky_rays: 0, seed: 0, rain };
+    let options = PictureOptions { size, grid: 1, sky_rays: 0, seed: 0, rain, ..PictureOptions::default() };
     let masks = MASKS.get_or_init(|| DropMasks::trace(1.333).expect("masks"));
     Ok(render_picture(scene, eye, drops, masks, &options)?)
 }

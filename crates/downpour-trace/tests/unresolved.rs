@@ -355,7 +355,14 @@ fn middle(
             light: DropLightOptions::default(),
             ..RainOptions::default()
         };
-        let options = PictureOptions { size: [lines, lines], grid: 1, sky_rays: 0, seed, rain };
+        let options = PictureOptions {
+            size: [lines, lines],
+            grid: 1,
+            sky_rays: 0,
+            seed,
+            rain,
+            ..PictureOptions::default()
+        };
         let picture = render_picture(scene, &view(fov as f32), &visible.drops, masks, &options)?;
         let (mut sum, mut count) = ([0.0; 2], 0.0);
         for (i, pixel) in picture.rain.iter().enumerate() {
@@ -414,7 +421,8 @@ fn all_of_the_rain_vanishes_in_even_light() -> Outcome {
     let medium = RainMedium::new(&law(200.0), &visible.resolved, masks, &MediumOptions::default())?;
     let exposure = Exposure { shutter_s: 1.0 / 100.0, ..Exposure::default() };
     let rain = RainOptions { medium, exposure, capture_size: 64, ..RainOptions::default() };
-    let options = PictureOptions { size: [48, 48], grid: 1, sky_rays: 0, seed: 1, rain };
+    let options =
+        PictureOptions { size: [48, 48], grid: 1, sky_rays: 0, seed: 1, rain, ..PictureOptions::default() };
     let scene = SceneBuilder::new().build(&SkyLight::uniform([0.25, 0.5, 2.0]));
     let fov = 2.0 * ops::atan(0.4);
     let picture = render_picture(&scene, &view(fov as f32), &visible.drops, masks, &options)?;

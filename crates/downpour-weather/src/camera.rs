@@ -35,6 +35,17 @@ pub enum Observer {
     Eye,
 }
 
+/// Tone curve from radiance to the colors of a picture to look at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ToneCurve {
+    /// Bright colors keep their hue and go toward white by their stops, as on film.
+    #[default]
+    Hue,
+    /// The neutral tone mapper of Khronos (2024).
+    KhronosNeutral,
+}
+
 /// A camera, or an eye instead.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
@@ -48,6 +59,8 @@ pub struct Camera {
     pub far: Option<f64>,
     /// The picture is multiplied by two to this power.
     pub exposure_ev: f64,
+    /// Tone curve of pictures to look at.
+    pub tone: ToneCurve,
     /// Observer of the moving drops.
     pub observer: Observer,
     /// Time in which light is collected, in seconds: opening time of a camera's shutter, 0 to 1 (0 freezes the drops), or
@@ -163,6 +176,7 @@ impl Default for Camera {
             near: None,
             far: None,
             exposure_ev: 0.0,
+            tone: ToneCurve::Hue,
             observer: Observer::Camera,
             shutter: 1.0 / 60.0,
             aperture: 0.0,
@@ -182,6 +196,7 @@ pub(super) struct CameraTable {
     near_m: Option<In<DepthM>>,
     far_m: Option<In<DepthM>>,
     exposure_ev: Option<NumberKeys<Stops>>,
+    tone: Option<ToneCurve>,
     observer: Option<Observer>,
     shutter_s: Option<In<ShutterS>>,
     persistence_s: Option<In<PersistenceS>>,
@@ -221,6 +236,7 @@ impl Camera {
             near,
             far,
             exposure_ev: default.exposure_ev,
+            tone: table.tone.unwrap_or_default(),
             observer,
             shutter: table.shutter(observer, positions)?,
             aperture: table.aperture_mm.map_or(default.aperture, |pupil| pupil.0 * 1.0e-3),

@@ -3,6 +3,7 @@
 use super::drips::{DripTable, Drips, DripsTable};
 use super::fault::Positions;
 use super::glass::GlassTable;
+use super::glow::GlowTable;
 use super::keys::WeatherKeys;
 use super::lamps::{Lamp, LampTable};
 use super::lightning::{FlashTable, Lightning, LightningTable, MAX_FLASHES};
@@ -43,6 +44,7 @@ struct Tables {
     wind_field: WindFieldTable,
     streaks: StreaksTable,
     glass: Option<GlassTable>,
+    glow: GlowTable,
     puddle: Vec<PuddleTable>,
     wetness: WetnessTable,
     splashes: SplashesTable,
@@ -94,6 +96,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         drips: Drips::checked(&tables.drips, &tables.drip),
         lightning: Lightning::checked(&tables.lightning, &tables.flash, rain.seed, &positions)?,
         glass: tables.glass.map(|glass| glass.checked(&rain, &positions)).transpose()?,
+        glow: tables.glow.checked(),
         rain,
         drop_model,
         sun,

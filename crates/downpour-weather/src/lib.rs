@@ -27,6 +27,7 @@ mod drips;
 mod fault;
 mod file;
 mod glass;
+mod glow;
 mod keys;
 mod lamps;
 mod lightning;
@@ -49,10 +50,13 @@ use downpour_scene::sandbox::open_named;
 use downpour_wind::Wind;
 use std::path::Path;
 
-pub use camera::{Camera, CameraPath, CameraPose, FAR_M, FOV_RAD, NEAR_M, Observer, PERSISTENCE_S};
+pub use camera::{
+    Camera, CameraPath, CameraPose, FAR_M, FOV_RAD, NEAR_M, Observer, PERSISTENCE_S, ToneCurve,
+};
 pub use downpour_scene::uri::RelativePath;
 pub use drips::{DripPoint, Drips};
 pub use glass::{Pane, PaneFocus, PaneFresnel, PaneShadow};
+pub use glow::{GLARE, Glow, GlowFilter};
 pub use keys::WeatherKeys;
 pub use lamps::Lamp;
 pub use lightning::{
@@ -143,6 +147,8 @@ pub struct Weather {
     pub streaks: Streaks,
     /// Pane in front of the camera.
     pub glass: Option<Pane>,
+    /// Light that goes beside its image.
+    pub glow: Glow,
     /// Water on the ground, in the order of the file.
     pub puddles: Vec<Puddle>,
     /// Wetness of the surfaces.
@@ -174,6 +180,7 @@ impl Default for Weather {
             wind_box: WindBox::default(),
             streaks: Streaks::default(),
             glass: None,
+            glow: Glow::default(),
             puddles: Vec::new(),
             wetness: Wetness::default(),
             splashes: Splashes::default(),

@@ -12,7 +12,6 @@ mod storm;
 mod stroke;
 mod tables;
 
-
 pub use exposure::{FlashExposure, FlashLight};
 pub use storm::Storm;
 pub use stroke::StrokePulse;

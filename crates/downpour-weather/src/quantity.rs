@@ -49,6 +49,7 @@ ranges! {
     AttenuationM: 0.001, 1000.0, "0.001 to 1000 m";
     Fraction: 0.0, 1.0, "0 to 1";
     Fill: 0.0, 1.0, "\"rain\", or 0 to 1";
+    GlowWidth: 0.1, 10.0, "0.1 to 10";
     DropSize: 0.05, 1.0, "0.05 to 1";
     ShortS: 0.01, 10.0, "0.01 to 10 s";
     Brightness: 0.0, 1e9, "0 to 1e9";

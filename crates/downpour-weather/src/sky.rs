@@ -124,9 +124,8 @@ impl SunKeys {
     pub(super) fn at(&self, time_s: f64) -> SunSource {
         let azimuth = self.azimuth_deg.at(time_s).to_radians();
         let elevation = self.elevation_deg.at(time_s).to_radians();
-        let flat = ops::cos(elevation);
         SunSource::Directional {
-            towards: [flat * ops::cos(azimuth), ops::sin(elevation), flat * ops::sin(azimuth)],
+            towards: towards(azimuth, elevation),
             illuminance_lux: self.illuminance_lux.at(time_s),
             color: self.color.at(time_s).to_array(),
             angular_radius: self.angular_radius,

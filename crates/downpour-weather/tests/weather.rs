@@ -9,8 +9,8 @@ use downpour_drop::distribution::DropSizeLaw;
 use downpour_drop::fall_speed::FallSpeedModel;
 use downpour_scene::{Budget, SceneError};
 use downpour_weather::{
-    Camera, CameraPose, Lamp, Observer, Rain, RainBounce, RainCylinder, RainDrag, RainDropLight, RainVolume,
-    Repeat, Sky, SkySource, SunSource, Weather,
+    Camera, CameraPose, Glow, GlowFilter, Lamp, Observer, Rain, RainBounce, RainCylinder, RainDrag,
+    RainDropLight, RainVolume, Repeat, Sky, SkySource, SunSource, ToneCurve, Weather,
 };
 use effort::measured;
 use exit_code::ExitCode as _;
@@ -79,7 +79,14 @@ fov_deg = 60
 near_m = 0.1
 far_m = 500
 exposure_ev = -2
+tone = "khronos-neutral"
 shutter_s = 0.01
+
+[glow]
+glare = 0.1
+width = 2
+filter = "kawase"
+diffraction = false
 
 [[model]]
 file = "models/street.glb"
@@ -217,6 +224,10 @@ fn an_empty_file_is_the_default() {
     assert_eq!(Sky::default().source, SkySource::Overcast([0.9, 0.95, 1.0]));
     assert_eq!((Camera::default().path, Camera::default().shutter), (None, 1.0 / 60.0));
     assert_eq!(Camera::default().observer, Observer::Camera);
+    assert_eq!(Camera::default().tone, ToneCurve::Hue);
+    let kawase = Glow { glare: 0.1, width: 2.0, filter: GlowFilter::Kawase, has_diffraction: false };
+    assert_eq!((default.glow.glare, parse(ALL).unwrap().glow), (0.02, kawase));
+    assert_eq!(parse(ALL).unwrap().camera.tone, ToneCurve::KhronosNeutral);
     let eye = |more: &str| parse(&format!("[camera]\nobserver = 'eye'\n{more}")).unwrap().camera;
     assert_eq!((eye("").observer, eye("").shutter), (Observer::Eye, 0.075));
     assert_eq!(eye("persistence_s = 0.09").shutter, 0.09);
@@ -461,7 +472,7 @@ fn t11_keys_are_known_and_stand_once() {
     says(
         "[rian]\nrate_mm_h = 5",
         "line 1, column 2: rian: unknown key \"rian\", perhaps rain; allowed: preset, rain, sky, sun, camera, model, light, \
-         flash, lightning, wind, gusts, turbulence, wind_field, streaks, glass, puddle, wetness, output",
+         flash, lightning, wind, gusts, turbulence, wind_field, streaks, glass, glow, puddle, wetness, splashes, drips, drip, output",
     );
     refused("[camera]\nfov_rad = 1", 2, "unknown key \"fov_rad\", perhaps fov_deg;");
     refused("[camera]\nshutter_s = 1.5", 2, "0 to 1 s");
@@ -480,6 +491,12 @@ fn t11_keys_are_known_and_stand_once() {
         2,
         "camera.shutter_s: with observer = \"eye\"",
     );
+    refused("[glow]\nglare = 1.5", 2, "glow.glare");
+    refused("[glow]\nglare = -0.1", 2, "0 to 1");
+    refused("[glow]\nwidth = 0", 2, "0.1 to 10");
+    refused("[glow]\nfilter = \"box\"", 2, "glow.filter");
+    refused("[glow]\nbloom = 1", 2, "glow.bloom");
+    refused("[camera]\ntone = \"channel\"", 2, "camera.tone");
     refused("[camera]\naperture_mm = nan", 2, "camera.aperture_mm");
     refused("[camera]\nfocus_m = 0", 2, "0.01 to 1e7 m");
     refused("[streaks]\nsamples = 0", 2, "streaks.samples");

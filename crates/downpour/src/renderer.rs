@@ -19,6 +19,7 @@ use crate::shower::{MovingEye, MovingScenery, Scenery, Shower, Still};
 use downpour_atlas::{StreakAtlas, StreakPick};
 use downpour_render::camera::{Viewpoint, check_size};
 use downpour_render::glass::WetPane;
+use downpour_render::glow::Glow;
 use downpour_render::picture::{PictureOptions, noise_seed};
 use downpour_render::rain::light::{DropLightForm, DropLightOptions};
 use downpour_render::rain::{DropMasks, EnvironmentFrame, Exposure, RainMedium, RainOptions, RefractionForm};
@@ -316,6 +317,7 @@ impl Renderer {
             medium,
             measured_rate_mm_h,
             exposure: exposure * self.weather.exposure_factor(time_s),
+            tone: self.weather.camera.tone,
             truth,
         })
     }
@@ -422,6 +424,7 @@ impl Renderer {
                 light: DropLightOptions::of_weather(&self.weather),
                 ..RainOptions::default()
             },
+            glow: Glow::of_weather(&self.weather, &medium),
         }
     }
 
@@ -441,7 +444,10 @@ impl Renderer {
     ) -> Result<Painted, RendererError> {
         let pane = self.water.as_ref().and_then(|water| water.pane.as_ref());
         let through = pane.map(|pane| through(pane, stage, options)).transpose()?;
-        let painted = self.drawer.paint(stage, drops, &self.masks, options, through.as_ref())?;
+        // What is seen through a pane glows when that is known.
+        let behind = PictureOptions { glow: Glow::default(), ..*options };
+        let drawn = if through.is_some() { &behind } else { options };
+        let painted = self.drawer.paint(stage, drops, &self.masks, drawn, through.as_ref())?;
         if waits { painted.wait() } else { Ok(painted) }
     }
 }
@@ -513,5 +519,5 @@ fn through(pane: &WetPane, stage: &Stage, options: &PictureOptions) -> Result<Th
     };
     let texels = layout.texels() as usize;
     let glass = pane.picture(&stage.viewpoint, &camera, frame.grid, &lighting, texels)?;
-    Ok(Through { glass, environment })
+    Ok(Through { glass, environment, glow: options.glow, camera })
 }

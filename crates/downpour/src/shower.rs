@@ -101,7 +101,7 @@ impl Shower {
         Self { dripping: other.dripping.clone(), ..self }
     }
 
-    /// Drops that drip, as a picture shows them.
+    /// Drops that drip, and their splashes, as a picture shows them.
     fn drips(
         &self,
         stage: &Stage,
@@ -109,7 +109,13 @@ impl Shower {
         least: f64,
         time_s: f64,
     ) -> Result<Vec<FallingDrop>, ShowerError> {
-        self.dripping.as_ref().map_or(Ok(Vec::new()), |dripping| dripping.visible(stage, view, least, time_s))
+        let Some(dripping) = &self.dripping else { return Ok(Vec::new()) };
+        let mut drops = dripping.visible(stage, view, least, time_s)?;
+        if let Some(splashes) = &self.splashes {
+            let impacts = dripping.impacts(stage, view, SplashOptions::span_s(time_s))?;
+            drops.extend(splashes.crowns(&impacts, view, time_s));
+        }
+        Ok(drops)
     }
 
     /// True if the drops are found in closed form, and not step by step.
@@ -148,9 +154,7 @@ impl Shower {
                 let mut visible = field.visible_among(&obstacles, &view, time_s)?;
                 let least = visible.resolved.least_pixels;
                 visible.drops.extend(field.bounced(&obstacles, &view, least, time_s, &self.bounce)?);
-                if let Some(splashes) = &self.splashes {
-                    visible.drops.extend(field.splashes(&obstacles, &view, time_s, splashes)?);
-                }
+                visible.drops.extend(splashed(field, &self.splashes, &obstacles, &view, time_s)?);
                 visible
             }
             Form::Stepped(stepped) => stepped.at(scenery, stage, time_s, passed)?,
@@ -185,9 +189,7 @@ impl Shower {
         let obstacles = obstacles(stage);
         let mut droplets = field.bounced(&obstacles, &view, least, time_s, &self.bounce)?;
         droplets.extend(self.drips(stage, &view, least, time_s)?);
-        if let Some(splashes) = &self.splashes {
-            droplets.extend(field.splashes(&obstacles, &view, time_s, splashes)?);
-        }
+        droplets.extend(splashed(field, &self.splashes, &obstacles, &view, time_s)?);
         let pane = pane_plane(&self.weather, &stage.viewpoint)?;
         if let Some(pane) = &pane {
             keep_outside(&mut droplets, pane, view.eye);
@@ -271,6 +273,20 @@ pub(crate) fn fall_speed(sizes: &DropSizeDistribution) -> f64 {
 /// Rain in closed form.
 fn closed(law: &DropSizeDistribution, rain: &Rain, wind: UniformWind) -> Result<Form, ShowerError> {
     Ok(Form::Closed(Arc::new(RainField::new(law, rain.seed)?.with_wind(wind))))
+}
+
+/// Crowns of the drops that have fallen from the sky.
+fn splashed(
+    field: &RainField,
+    splashes: &Option<SplashOptions>,
+    obstacles: &Obstacles<'_>,
+    view: &View,
+    time_s: f64,
+) -> Result<Vec<FallingDrop>, ShowerError> {
+    match splashes {
+        Some(splashes) => Ok(field.splashes(obstacles, view, time_s, splashes)?),
+        None => Ok(Vec::new()),
+    }
 }
 
 /// Splashes of a weather, if it has any.

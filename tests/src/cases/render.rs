@@ -1,5 +1,6 @@
 //! `shaders/wgsl/render` against `downpour-render`, a file per shader.
 
+mod glow;
 mod project;
 mod specimen;
 mod streak;
@@ -16,8 +17,9 @@ pub(super) fn functions() -> Vec<FunctionCase> {
 /// The cases.
 #[must_use]
 pub(super) fn kernels() -> Vec<KernelCase> {
-    project::kernels()
+    glow::kernels()
         .into_iter()
+        .chain(project::kernels())
         .chain(specimen::kernels())
         .chain(streak::kernels())
         .chain(tiles::kernels())

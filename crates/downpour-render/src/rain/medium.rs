@@ -94,6 +94,8 @@ pub struct RainMedium {
     region: Region,
     /// Mean row of the masks' diameters, weighted by outline.
     row: f32,
+    /// Mean diameter of all drops, weighted by outline, m.
+    mean_diameter_m: f64,
     /// Rate of the sizes that are nowhere drawn, mm/h.
     rate_mm_h: f64,
     pane: Option<PanePlane>,
@@ -116,6 +118,7 @@ impl RainMedium {
         let mut depths = [0.0f64; ENTRIES];
         let (mut all, mut above, mut rate_mm_h) = (0.0, 0.0, 0.0);
         let (mut weight, mut row) = (0.0, 0.0);
+        let mut diameters = 0.0;
         for [lower, upper] in rain.diameter_classes(BINS_PER_OCTAVE) {
             // A last sliver would be too thin a bin.
             if upper - lower <= 1.0e-6 {
@@ -129,6 +132,7 @@ impl RainMedium {
             let (near, far) = (resolved.near, resolved.range(diameter));
             let drawn = |distance: f64| (distance.min(far) - near).max(0.0);
             all += extinction;
+            diameters += extinction * diameter;
             above += options.efficiency.factor()
                 * part.cross_section()
                 * masks.outline(diameter as f32, std::f32::consts::FRAC_PI_2);
@@ -151,6 +155,7 @@ impl RainMedium {
             rise: Vec3::Y,
             region: relative_to(resolved.region, options.origin),
             row: if weight > 0.0 { (row / weight) as f32 } else { 0.0 },
+            mean_diameter_m: diameters / all,
             rate_mm_h,
             pane: options.pane,
         };
@@ -167,6 +172,12 @@ impl RainMedium {
     #[must_use]
     pub fn extinction(&self) -> f64 {
         self.all.into()
+    }
+
+    /// Mean diameter of all drops, drawn or not, weighted by the areas of their outlines, m; `None` without rain.
+    #[must_use]
+    pub fn mean_diameter_m(&self) -> Option<f64> {
+        (self.all > 0.0).then_some(self.mean_diameter_m)
     }
 
     /// Fraction of the extinction of a level ray of 50 m within the simulated region that is not drawn drop by drop, 0 to 1.

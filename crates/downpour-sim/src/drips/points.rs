@@ -87,7 +87,7 @@ impl DripPoints {
         let of_each: Vec<Vec<DripPoint>> =
             found.outflows.par_iter().map(|outflow| edges.points(outflow)).collect();
         let ran_down = found.outflows.iter().zip(&of_each).filter(|(_, points)| points.is_empty());
-        let ran_down_m2 = ran_down.map(|(outflow, _)| f64::from(outflow.cells) * cell_m2).sum();
+        let ran_down_m2: f64 = ran_down.map(|(outflow, _)| f64::from(outflow.cells) * cell_m2).sum();
         let points = merged(of_each.iter().flatten());
         if points.len() > MAX_POINTS {
             return Err(super::surfaces::out_of_range(

@@ -73,9 +73,8 @@ impl RainField {
             (range >= view.near).then(|| (view.bounds(range, radius), in_picture))
         };
         let impacts =
-            self.impacts_of(&Surfaces::new(obstacles), [time_s - LONGEST_S, time_s], bounds, |_| true)?;
-        let mut crowns: Vec<FallingDrop> =
-            impacts.iter().filter_map(|impact| options.crown(impact, view, time_s)).collect();
+            self.impacts_of(&Surfaces::new(obstacles), SplashOptions::span_s(time_s), bounds, |_| true)?;
+        let mut crowns = options.crowns(&impacts, view, time_s);
         if crowns.len() > MOST {
             crowns.sort_by(|a, b| b.diameter.total_cmp(&a.diameter).then(a.id.cmp(&b.id)));
             crowns.truncate(MOST);
@@ -85,6 +84,18 @@ impl RainField {
 }
 
 impl SplashOptions {
+    /// Span of time, s, in which the impacts are whose crowns stand at a time.
+    #[must_use]
+    pub fn span_s(time_s: f64) -> [f64; 2] {
+        [time_s - LONGEST_S, time_s]
+    }
+
+    /// Crowns of impacts that a picture shows at a time in seconds.
+    #[must_use]
+    pub fn crowns(&self, impacts: &[Impact], view: &View, time_s: f64) -> Vec<FallingDrop> {
+        impacts.iter().filter_map(|impact| self.crown(impact, view, time_s)).collect()
+    }
+
     /// Crown of an impact at a time in s, if there is one and the picture shows it.
     fn crown(&self, impact: &Impact, view: &View, time_s: f64) -> Option<FallingDrop> {
         let age_s = time_s - impact.time_s;

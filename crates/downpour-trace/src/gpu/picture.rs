@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 use downpour_render::RenderError;
 use downpour_render::camera::Viewpoint;
-use downpour_render::gpu::{BehindGlass, FallingOnGpu, RainOnGpu, RainPipeline};
+use downpour_render::gpu::{BehindGlass, FallingOnGpu, GlowPipeline, RainOnGpu, RainPipeline};
 use downpour_render::picture::{DeviceUse, Picture, PictureOptions};
 use downpour_render::rain::{DropMasks, Rain};
 
@@ -60,7 +60,7 @@ impl From<GpuSimError> for GpuPictureError {
 }
 
 /// Labels of the buffers that a picture keeps.
-const GIVEN_AWAY: [&str; 4] = ["picture", "rain", "environment map", "distances of drops"];
+const GIVEN_AWAY: [&str; 5] = ["picture", "rain", "environment map", "distances of drops", "glow"];
 
 /// Room for passes that are timed by the device.
 const MAX_PASSES: u32 = 32;
@@ -71,6 +71,7 @@ pub struct PictureRenderer {
     gpu: Gpu,
     scene: ScenePipeline,
     rain: RainPipeline,
+    glow: GlowPipeline,
     fields: FieldPipeline,
     pool: Arc<BufferPool>,
     /// Locked for as long as a picture is drawn with the pool's buffers.
@@ -94,6 +95,7 @@ impl PictureRenderer {
             gpu: gpu.clone(),
             scene: ScenePipeline::new(gpu)?,
             rain: RainPipeline::new(gpu)?,
+            glow: GlowPipeline::new(gpu)?,
             fields: FieldPipeline::new(gpu)?,
             // A picture may be read after the next one is begun.
             pool: Arc::new(BufferPool::new(gpu).with_given_away(&GIVEN_AWAY)),
@@ -206,6 +208,11 @@ impl PictureRenderer {
         let environment = plate.of(&clean).environment.clone();
         let distances = pass.distances().0.clone();
         drop(pass);
+        let glow = self.glow.prepare(pool, &options.glow, &camera, &clean, &layer)?;
+        if let Some(glow) = &glow {
+            passes.run("glow", &glow.dispatches())?;
+        }
+        let glow = glow.map(|pass| pass.target().clone());
         let (times, ticks) = passes.end()?;
         // The next picture may write the list.
         let found =
@@ -223,6 +230,7 @@ impl PictureRenderer {
             distances,
             clean,
             layer,
+            glow,
             environment,
             times,
             ticks,
@@ -257,6 +265,7 @@ pub struct PictureOnGpu {
     distances: wgpu::Buffer,
     clean: wgpu::Buffer,
     layer: wgpu::Buffer,
+    glow: Option<wgpu::Buffer>,
     environment: wgpu::Buffer,
     times: FrameTimes,
     ticks: Option<wgpu::Buffer>,
@@ -277,6 +286,7 @@ pub struct PictureReadback {
     read: Readback,
     times: FrameTimes,
     has_ticks: bool,
+    has_glow: bool,
     device: DeviceUse,
     passes: Vec<(&'static str, f64)>,
 }
@@ -295,15 +305,28 @@ impl PictureOnGpu {
     pub fn begin_read(self) -> Result<PictureReadback, GpuError> {
         let Self { pool, pace, samples, rain, count, found, times, passes, device, .. } = self;
         let mut buffers = vec![&self.distances, &self.clean, &self.layer, &self.environment];
+        buffers.extend(&self.glow);
         buffers.extend(&self.ticks);
         let read = self.readbacks.begin(&self.gpu, &buffers)?;
-        let has_ticks = self.ticks.is_some();
+        let (has_ticks, has_glow) = (self.ticks.is_some(), self.glow.is_some());
         // What writes them next is submitted after the copies.
         let layers = [self.clean, self.layer, self.environment, self.distances];
-        for (label, buffer) in GIVEN_AWAY.into_iter().zip(layers) {
+        for (label, buffer) in GIVEN_AWAY.into_iter().zip(layers.into_iter().chain(self.glow)) {
             pool.give_back(label, buffer);
         }
-        Ok(PictureReadback { pace, samples, rain, count, found, read, times, has_ticks, device, passes })
+        Ok(PictureReadback {
+            pace,
+            samples,
+            rain,
+            count,
+            found,
+            read,
+            times,
+            has_ticks,
+            has_glow,
+            device,
+            passes,
+        })
     }
 
     /// Reads the picture back.
@@ -322,22 +345,24 @@ impl PictureReadback {
     /// # Errors
     /// [`GpuPictureError::NoRoom`] if there were more of them than expected, or what the GPU says.
     pub fn finish(self) -> Result<(Picture, Option<FoundDrops>), GpuPictureError> {
-        let Self { pace, samples, rain, count, found, mut read, times, has_ticks, device, passes: others } =
-            self;
+        let Self { pace, samples, rain, count, found, mut read, times, .. } = self;
+        let (has_ticks, has_glow, device, others) = (self.has_ticks, self.has_glow, self.device, self.passes);
         read.wait()?;
         let begin = Instant::now();
         let mut distances = read.take::<f32>(0)?;
         distances.truncate(count);
         let found = found.map(|found| found.finish(&mut distances)).transpose()?;
         let [clean, layer, environment] = [read.take(1)?, read.take(2)?, read.take(3)?];
-        let mut passes = times.read(&if has_ticks { read.take(4)? } else { Vec::new() });
+        let glow = if has_glow { read.take(4)? } else { Vec::new() };
+        let ticks = 4 + usize::from(has_glow);
+        let mut passes = times.read(&if has_ticks { read.take(ticks)? } else { Vec::new() });
         if has_ticks && let Some((_, ms)) = passes.iter().find(|(name, _)| *name == "scene") {
             *pace.lock().unwrap_or_else(PoisonError::into_inner) = Some(ms / samples);
         }
         passes.extend(others);
         passes.push(("readback", begin.elapsed().as_secs_f64() * 1.0e3));
         let picture = Picture::new(&rain, clean, layer, environment, passes).with_seen(&distances);
-        Ok((Picture { device: Some(device), ..picture }, found))
+        Ok((Picture { device: Some(device), glow, ..picture }, found))
     }
 }
 

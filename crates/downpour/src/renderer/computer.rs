@@ -1,7 +1,8 @@
 //! Devices that draw frames: a GPU with its pipelines, or the CPU.
 
-use downpour_render::camera::Viewpoint;
+use downpour_render::camera::{Camera, Viewpoint};
 use downpour_render::glass::{GlassPicture, WetPane};
+use downpour_render::glow::Glow;
 use downpour_render::picture::{Picture, PictureOptions, timed};
 use downpour_render::rain::DropMasks;
 use downpour_trace::picture::render_picture;
@@ -109,7 +110,7 @@ pub(super) enum Painted {
     #[cfg(feature = "wgpu")]
     OnItsWay {
         read: Box<downpour_trace::gpu::PictureReadback>,
-        through_glass: Option<Vec<[f32; 3]>>,
+        through_glass: Option<Box<ThroughGlass>>,
     },
 }
 
@@ -131,7 +132,10 @@ impl Painted {
             Self::OnItsWay { read, through_glass } => {
                 let (picture, found) = read.finish()?;
                 let found = found.map(|found| Found { drops: found.drops, simulated: found.simulated });
-                Ok((Picture { through_glass, ..picture }, found))
+                let Some(through) = through_glass else { return Ok((picture, found)) };
+                let mut picture = Picture { through_glass: Some(through.seen), ..picture };
+                picture.add_glow(&through.glow, &through.camera);
+                Ok((picture, found))
             }
         }
     }
@@ -142,11 +146,24 @@ impl Painted {
     }
 }
 
+/// A frame as it is seen through a pane, and its glow.
+#[cfg(feature = "wgpu")]
+#[derive(Debug)]
+pub(super) struct ThroughGlass {
+    pub(super) seen: Vec<[f32; 3]>,
+    pub(super) glow: Glow,
+    pub(super) camera: Camera,
+}
+
 /// Pane that a frame is seen through.
 pub(super) struct Through {
     pub(super) glass: GlassPicture,
     /// The environment map that the pane shows; `None` takes the one of the drops.
     pub(super) environment: Option<Vec<[f32; 4]>>,
+    /// Glow of what is seen through it.
+    pub(super) glow: Glow,
+    /// Camera of the frame.
+    pub(super) camera: Camera,
 }
 
 impl std::fmt::Debug for Drawer {
@@ -253,11 +270,12 @@ impl Drawer {
             Drops::OfDevice(shown) => stage.place(&shown.droplets),
         };
         let mut picture = render_picture(&stage.data, &stage.viewpoint, &drops, masks, options)?;
-        if let Some(Through { glass, environment }) = through {
+        if let Some(Through { glass, environment, glow, camera }) = through {
             let environment = environment.as_ref().unwrap_or(&picture.surroundings);
             let behind = picture.behind_glass();
             let seen = timed(&mut picture.passes, "glass", || glass.through(&behind, environment));
             picture.through_glass = Some(seen);
+            picture.add_glow(glow, camera);
         }
         Ok(Painted::Done(Box::new((picture, None))))
     }

@@ -3,10 +3,10 @@
 use std::path::Path;
 use std::time::Instant;
 
-use downpour_render::file::{layer_channels, write_exr, write_exr_channels, write_png};
+use downpour_render::file::{glow_channels, layer_channels, write_exr, write_exr_channels, write_png};
 use downpour_render::picture::Picture;
 use downpour_render::rain::RainMedium;
-use downpour_render::tone::tone_picture;
+use downpour_render::tone::{ToneCurve, tone_picture};
 use downpour_sim::field::VisibleDrops;
 
 use super::RendererError;
@@ -30,6 +30,8 @@ pub struct Frame {
     pub measured_rate_mm_h: Option<f64>,
     /// The factor from radiance to [`Frame::pixels`].
     pub exposure: f32,
+    /// Tone curve of [`Frame::pixels`].
+    pub tone: ToneCurve,
     /// Truth about its pixels, where it was asked for.
     pub truth: Option<Truth>,
     /// Triangles of the scene, all copies counted.
@@ -54,6 +56,7 @@ pub struct PendingFrame {
     pub(super) medium: RainMedium,
     pub(super) measured_rate_mm_h: Option<f64>,
     pub(super) exposure: f32,
+    pub(super) tone: ToneCurve,
     pub(super) truth: Option<Box<TruthOf>>,
 }
 
@@ -79,6 +82,7 @@ impl PendingFrame {
             medium: self.medium,
             measured_rate_mm_h: self.measured_rate_mm_h,
             exposure: self.exposure,
+            tone: self.tone,
             triangles: self.triangles,
             begin_ms: self.begin_ms,
             frame_ms: self.begin.elapsed().as_secs_f64() * 1.0e3,
@@ -102,7 +106,7 @@ impl Frame {
     /// The picture to look at, sRGB, rows from the top.
     #[must_use]
     pub fn pixels(&self) -> Vec<[u8; 3]> {
-        tone_picture(&self.radiance(), self.exposure)
+        tone_picture(&self.radiance(), self.exposure, self.tone)
     }
 
     /// The bytes of a PNG of [`Frame::pixels`].
@@ -124,7 +128,7 @@ impl Frame {
     }
 
     /// The bytes of an OpenEXR of all layers: R, G, B; clean.R, .G, .B; rain.R, .G, .B; transmittance.Y; depth.Z (metres along
-    /// the ray, 1e30 for the sky). With [`Frame::truth`] also of the drop that a pixel shows most of `drop.id_low` and
+    /// the ray, 1e30 for the sky); with glow also glow.R, .G, .B, so that `R = clean.R * transmittance.Y + rain.R + glow.R` but for panes. With [`Frame::truth`] also of the drop that a pixel shows most of `drop.id_low` and
     /// `drop.id_high` (the halves of its id), `drop.diameter_mm` (0: none), `drop.distance_m` and `drop.alpha`; and of the surface behind
     /// it `wetness.Y`, `water.depth_mm`, `motion.X` and `motion.Y` (pixels per second, to the right and down).
     ///
@@ -132,7 +136,8 @@ impl Frame {
     /// As [`Frame::png`].
     pub fn exr_layers(&self) -> Result<Vec<u8>, RendererError> {
         let ([width, height], picture) = (self.size(), &self.picture);
-        let mut channels = layer_channels(&picture.clean, &picture.rain, picture.through_glass.as_deref());
+        let mut channels = layer_channels(&picture.clean, &picture.rain, Some(&picture.radiance()));
+        channels.extend(glow_channels(&picture.glow));
         channels.extend(self.truth.as_ref().map(Truth::channels).into_iter().flatten());
         Ok(write_exr_channels([width, height], channels)?)
     }

@@ -14,7 +14,7 @@ use downpour_trace::gpu::{FieldDrops, PictureDrops, PictureOnGpu, PictureRendere
 use downpour_trace::stage::Stage;
 
 use super::RendererError;
-use super::computer::{Painted, Through};
+use super::computer::{Painted, Through, ThroughGlass};
 use super::drops::Drops;
 use crate::shower::ShowerView;
 
@@ -59,7 +59,7 @@ impl OnGpu {
             }
             Drops::OfDevice(shown) => self.draw(stage, shown, masks, options)?,
         };
-        let Some(Through { glass, environment }) = through else {
+        let Some(Through { glass, environment, glow, camera }) = through else {
             return Ok(Painted::OnItsWay { read: Box::new(drawn.begin_read()?), through_glass: None });
         };
         let begin = Instant::now();
@@ -71,7 +71,8 @@ impl OnGpu {
         let environment = uploaded.as_ref().unwrap_or(behind.environment);
         let seen = self.pane()?.through(glass, &BehindGlass { environment, ..behind })?;
         drawn.passes.push(("glass", begin.elapsed().as_secs_f64() * 1.0e3));
-        Ok(Painted::OnItsWay { read: Box::new(drawn.begin_read()?), through_glass: Some(seen) })
+        let through_glass = Some(Box::new(ThroughGlass { seen, glow: *glow, camera: *camera }));
+        Ok(Painted::OnItsWay { read: Box::new(drawn.begin_read()?), through_glass })
     }
 
     /// Draws a frame whose drops the device finds.

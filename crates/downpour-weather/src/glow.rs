@@ -1,0 +1,65 @@
+//! `[glow]`: light around lights.
+
+use super::quantity::{Fraction, GlowWidth, In};
+use serde::Deserialize;
+
+/// Default fraction of light that a lens scatters.
+pub const GLARE: f64 = 0.02;
+
+/// Filter that spreads glare.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum GlowFilter {
+    /// A pyramid, whose levels have the law of the CIE.
+    #[default]
+    Pyramid,
+    /// Successive passes of Kawase's filter, as in Tatarchuk & Isidoro 2006.
+    Kawase,
+}
+
+/// Light that goes beside its image, in the air and in the lens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Glow {
+    /// Fraction of light that lens or eye scatter, 0 to 1.
+    pub glare: f64,
+    /// Factor of the angles of glare.
+    pub width: f64,
+    /// Filter that spreads glare.
+    pub filter: GlowFilter,
+    /// True if drops between light and eye diffract.
+    pub has_diffraction: bool,
+}
+
+impl Default for Glow {
+    /// A lens in fair condition.
+    fn default() -> Self {
+        Self { glare: GLARE, width: 1.0, filter: GlowFilter::Pyramid, has_diffraction: true }
+    }
+}
+
+impl Glow {
+    /// No glow.
+    pub const NONE: Self =
+        Self { glare: 0.0, width: 1.0, filter: GlowFilter::Pyramid, has_diffraction: false };
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct GlowTable {
+    glare: Option<In<Fraction>>,
+    width: Option<In<GlowWidth>>,
+    filter: Option<GlowFilter>,
+    diffraction: Option<bool>,
+}
+
+impl GlowTable {
+    pub(super) fn checked(&self) -> Glow {
+        let default = Glow::default();
+        Glow {
+            glare: self.glare.map_or(default.glare, |glare| glare.0),
+            width: self.width.map_or(default.width, |width| width.0),
+            filter: self.filter.unwrap_or_default(),
+            has_diffraction: self.diffraction.unwrap_or(default.has_diffraction),
+        }
+    }
+}
