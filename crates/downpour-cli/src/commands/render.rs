@@ -11,6 +11,7 @@ mod paths;
 mod report;
 #[cfg(feature = "video")]
 mod video;
+mod watch;
 
 use std::path::PathBuf;
 
@@ -81,6 +82,10 @@ pub(crate) struct RenderArguments {
     /// Lookup of the color of a drop's pixel [default: the weather's].
     #[arg(long, value_enum)]
     refraction: Option<Refraction>,
+    /// Make the picture again when the weather file changes, until the command is stopped. A broken file prints its error and
+    /// the last good picture stays.
+    #[arg(long, conflicts_with = "frames")]
+    watch: bool,
     /// Replace existing files; start a clip from its first frame.
     #[arg(long)]
     overwrite: bool,
@@ -116,14 +121,15 @@ impl RenderArguments {
         self.backend.check()?;
         match (self.frames, self.fps) {
             (Some(frames), Some(fps)) => clip::run(self, frames, fps, interrupt),
-            _ => self.picture(interrupt),
+            _ if self.watch => watch::run(self, interrupt),
+            _ => self.picture(self.overwrite, interrupt),
         }
     }
 
     /// Makes a single picture.
-    fn picture(&self, interrupt: &Interrupt) -> Result<(), Failure> {
+    fn picture(&self, overwrite: bool, interrupt: &Interrupt) -> Result<(), Failure> {
         let (stats, drops) = (self.stats.as_deref(), self.dump_drops.as_deref());
-        let outputs = Outputs::new(&self.output, stats, drops, self.overwrite)?;
+        let outputs = Outputs::new(&self.output, stats, drops, overwrite)?;
         self.check_layers(outputs.format)?;
         let input = doing("reading", self.quiet, || self.input.read(&mut Budget::default()))?;
         outputs.keep(&input.files)?;

@@ -34,6 +34,8 @@ mod scenes;
 mod signals;
 mod specimen;
 mod street;
+#[cfg(unix)]
+mod watch;
 mod wind;
 #[cfg(all(feature = "gpu", target_os = "linux"))]
 mod without_gpu;
