@@ -18,6 +18,7 @@ use downpour_mask::gpu::{DropUniform, ModelUniform};
 use downpour_math::pyramid::PyramidLevel;
 use downpour_render::camera::Camera;
 use downpour_render::glass::{GlassPictureDrop, GlassPictureFrame, GlassPictureLight};
+use downpour_render::glow::GlowLevel;
 use downpour_render::host::{HostBlendFrame, HostEnvironmentFrame, HostPlateFrame};
 use downpour_render::rain::light::DropLightFrame;
 use downpour_render::rain::medium::MediumFrame;
@@ -114,6 +115,8 @@ fn hosts() -> Vec<Host> {
         host!(ProfilesFrame as "ProfilesFrame" in &render::rain::PROFILES,
             count, max_rays, max_entries, first_entry, seed, amplitudes, medium, unused_1, unused_2, unused_3),
         host!(TilesFrame as "TilesFrame" in &render::rain::TILES, size, count, room),
+        host!(GlowLevel as "GlowLevel" in &render::glow::GLOW,
+            size, coarse, first, coarse_first, weight, coarse_weight, fraction, extinction, is_added, offset),
         host!(MediumFrame as "MediumFrame" in &render::medium::MEDIUM,
             depths, rise, all, center, region, size, flatness, eye, open, columns, rows, lit, shape, pane),
         host!(DropsDrop as "DropsDrop" in &render::rain::STREAK,

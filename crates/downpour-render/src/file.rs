@@ -7,6 +7,7 @@
 //! | `R`, `G`, `B` | the picture: `clean * transmittance + rain`, or that through a pane of wet glass; the other channels are behind the pane |
 //! | `clean.R`, `clean.G`, `clean.B` | radiance of the scene without rain |
 //! | `rain.R`, `rain.G`, `rain.B` | radiance that the rain adds |
+//! | `glow.R`, `glow.G`, `glow.B` | what glow adds, if anything glows |
 //! | `transmittance.Y` | fraction of the scene's light that comes through the rain, 0 to 1 |
 //! | `depth.Z` | distance of the nearest surface from the eye along the ray, meters; 1e30 for the sky |
 //!

@@ -5,9 +5,9 @@
 //!
 //! - Drops between a light and the eye diffract as much light as their outlines cover (Babinet), in the pattern of a disk of their
 //!   diameter (Airy). The first ring of a drop of 2 mm is 0.02 degrees away: it shows with long lenses alone.
-//! - A lens, or an eye, scatters a fraction of all light: the law of the CIE for the eye (CIE 146:2002, general disability glare, age term
-//!   left out), `L / E = 10 / angle^3 + 5 / angle^2`, with the angle in degrees from 0.1 to 30. A camera's fraction is its veiling glare:
-//!   1 to 5 % in the lenses of McCann & Rizzi 2012 and of ISO 9358.
+//! - A lens, or an eye, scatters a fraction of all light: the law of the CIE for the eye (CIE 146:2002, small angle disability glare, age
+//!   term left out), `L / E = 10 / angle^3 + 5 / angle^2`, with the angle in degrees from 0.1 to 30. Integrated it is 27 % for an eye; a
+//!   camera's fraction is its veiling glare (ISO 9358), a few percent.
 //!
 //! Light is kept: what is taken comes back around, mirrored at the borders, and a picture of one color stays as it is. A pixel's angle is
 //! that in the middle of the picture.

@@ -152,7 +152,8 @@ fn in_uniform_surroundings_splashes_vanish() -> Outcome {
     };
     let crowns: Vec<FallingDrop> = (0..25).map(crown).collect();
     let rain = RainOptions { capture_size: 128, capture_grid: 1, ..RainOptions::default() };
-    let options = PictureOptions { size: SIZE, grid: 1, sky_rays: 0, seed: 0, rain, ..PictureOptions::default() };
+    let options =
+        PictureOptions { size: SIZE, grid: 1, sky_rays: 0, seed: 0, rain, ..PictureOptions::default() };
     let masks = DropMasks::trace(1.333)?.with_splashes(1.333)?;
     let shown = render_picture(&scene, &viewpoint(), &crowns, &masks, &options)?;
     let area = covered(&shown).0;

@@ -5,19 +5,12 @@ use glam::DVec3;
 use serde::Deserialize;
 
 /// Water that drips from the edges of the scene, and from points that are set by hand.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Drips {
     /// True if water that has fallen on the scene drips from its edges.
     pub is_enabled: bool,
     /// Points that are set by hand, in the order of the file.
     pub points: Vec<DripPoint>,
-}
-
-impl Default for Drips {
-    /// The edges that the scene has.
-    fn default() -> Self {
-        Self { is_enabled: true, points: Vec::new() }
-    }
 }
 
 /// A point that drips at a rate of its own, whatever the rain.
@@ -38,7 +31,7 @@ impl Drips {
             per_s: point.per_second.0,
             diameter_m: point.diameter_mm.map(|diameter| diameter.0 * 1.0e-3),
         });
-        Self { is_enabled: table.enabled.unwrap_or(true), points: points.collect() }
+        Self { is_enabled: table.enabled.unwrap_or_default(), points: points.collect() }
     }
 }
 

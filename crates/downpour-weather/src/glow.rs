@@ -4,7 +4,7 @@ use super::quantity::{Fraction, GlowWidth, In};
 use serde::Deserialize;
 
 /// Default fraction of light that a lens scatters.
-pub const GLARE: f64 = 0.02;
+pub const GLARE: f64 = 0.01;
 
 /// Filter that spreads glare.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Deserialize)]

@@ -23,7 +23,7 @@ fn every_key_is_read() {
     let first = DripPoint { position: DVec3::new(1.0, 2.0, -3.0), per_s: 0.5, diameter_m: None };
     let second = DripPoint { position: DVec3::Y * 4.0, per_s: 40.0, diameter_m: Some(2.5e-3) };
     assert_eq!(drips, Drips { is_enabled: false, points: vec![first, second] });
-    assert_eq!(Weather::parse("w.toml", "").unwrap().drips, Drips { is_enabled: true, points: Vec::new() });
+    assert_eq!(Weather::parse("w.toml", "").unwrap().drips, Drips { is_enabled: false, points: Vec::new() });
 }
 
 #[test]

@@ -226,7 +226,7 @@ fn an_empty_file_is_the_default() {
     assert_eq!(Camera::default().observer, Observer::Camera);
     assert_eq!(Camera::default().tone, ToneCurve::Hue);
     let kawase = Glow { glare: 0.1, width: 2.0, filter: GlowFilter::Kawase, has_diffraction: false };
-    assert_eq!((default.glow.glare, parse(ALL).unwrap().glow), (0.02, kawase));
+    assert_eq!((default.glow.glare, parse(ALL).unwrap().glow), (0.01, kawase));
     assert_eq!(parse(ALL).unwrap().camera.tone, ToneCurve::KhronosNeutral);
     let eye = |more: &str| parse(&format!("[camera]\nobserver = 'eye'\n{more}")).unwrap().camera;
     assert_eq!((eye("").observer, eye("").shutter), (Observer::Eye, 0.075));

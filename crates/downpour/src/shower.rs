@@ -101,7 +101,7 @@ impl Shower {
         Self { dripping: other.dripping.clone(), ..self }
     }
 
-    /// Drops that drip, and their splashes, as a picture shows them.
+    /// Drops that drip, as a picture shows them.
     fn drips(
         &self,
         stage: &Stage,
@@ -109,13 +109,7 @@ impl Shower {
         least: f64,
         time_s: f64,
     ) -> Result<Vec<FallingDrop>, ShowerError> {
-        let Some(dripping) = &self.dripping else { return Ok(Vec::new()) };
-        let mut drops = dripping.visible(stage, view, least, time_s)?;
-        if let Some(splashes) = &self.splashes {
-            let impacts = dripping.impacts(stage, view, SplashOptions::span_s(time_s))?;
-            drops.extend(splashes.crowns(&impacts, view, time_s));
-        }
-        Ok(drops)
+        self.dripping.as_ref().map_or(Ok(Vec::new()), |dripping| dripping.visible(stage, view, least, time_s))
     }
 
     /// True if the drops are found in closed form, and not step by step.

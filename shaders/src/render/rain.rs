@@ -149,7 +149,7 @@ shared_constants! {
         /// Inverse of the mean over a sphere's outline of the squared sine by which it bends light.
         DROPS_BENT: f32 = 3.8;
         /// No part of a splash shows more of a lamp's light than so many times the mean.
-        DROPS_BENT_MOST: f32 = 2.5;
+        DROPS_BENT_MOST: f32 = 4.0;
         /// Form of refraction: the direction of the refracted light is looked up.
         DROPS_DIRECTION: u32 = 0;
         /// Form of refraction: the position in the captured picture is shifted (Rousseau 2006).

@@ -21,13 +21,13 @@ const SPLASH: u64 = 0x6a09_e667_f3bc_c909;
 const SIZES: [f64; 2] = [0.75, 1.25];
 
 /// Crowns are drawn from this width on the picture on, in pixels: below, they are no more than the texture of the ground.
-const LEAST_PIXELS: f64 = 1.5;
+const LEAST_PIXELS: f64 = 3.0;
 
 /// Least vertical component of the normal of a surface on which crowns stand: on steeper ones a drop spreads downhill.
 const LEVEL: f32 = 0.8;
 
-/// Longest duration of a crown, s: those of the largest drops at terminal speed take half of it.
-const LONGEST_S: f64 = 0.08;
+/// Longest duration of a crown, s: that of a drop of 5 mm at terminal speed.
+const LONGEST_S: f64 = 0.055;
 
 /// Largest number of crowns of a picture.
 const MOST: usize = 65_536;
@@ -42,7 +42,7 @@ pub struct SplashOptions {
 }
 
 impl RainField {
-    /// Crowns of splashes that a picture shows at a time in seconds: of drops that have hit a surface that is not steep, from 1.5
+    /// Crowns of splashes that a picture shows at a time in seconds: of drops that have hit a surface that is not steep, from 3
     /// pixels wide on. They stand where the drop hit until they have fallen back; what moves under them meanwhile leaves them. Of more
     /// than 65 536 those of the smallest drops are left out.
     ///
@@ -73,8 +73,9 @@ impl RainField {
             (range >= view.near).then(|| (view.bounds(range, radius), in_picture))
         };
         let impacts =
-            self.impacts_of(&Surfaces::new(obstacles), SplashOptions::span_s(time_s), bounds, |_| true)?;
-        let mut crowns = options.crowns(&impacts, view, time_s);
+            self.impacts_of(&Surfaces::new(obstacles), [time_s - LONGEST_S, time_s], bounds, |_| true)?;
+        let mut crowns: Vec<FallingDrop> =
+            impacts.iter().filter_map(|impact| options.crown(impact, view, time_s)).collect();
         if crowns.len() > MOST {
             crowns.sort_by(|a, b| b.diameter.total_cmp(&a.diameter).then(a.id.cmp(&b.id)));
             crowns.truncate(MOST);
@@ -84,18 +85,6 @@ impl RainField {
 }
 
 impl SplashOptions {
-    /// Span of time, s, in which the impacts are whose crowns stand at a time.
-    #[must_use]
-    pub fn span_s(time_s: f64) -> [f64; 2] {
-        [time_s - LONGEST_S, time_s]
-    }
-
-    /// Crowns of impacts that a picture shows at a time in seconds.
-    #[must_use]
-    pub fn crowns(&self, impacts: &[Impact], view: &View, time_s: f64) -> Vec<FallingDrop> {
-        impacts.iter().filter_map(|impact| self.crown(impact, view, time_s)).collect()
-    }
-
     /// Crown of an impact at a time in s, if there is one and the picture shows it.
     fn crown(&self, impact: &Impact, view: &View, time_s: f64) -> Option<FallingDrop> {
         let age_s = time_s - impact.time_s;

@@ -6,7 +6,6 @@ use downpour_drop::drip::{BROAD_RADIUS_M, Drip};
 use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_sim::drips::{DripOptions, DripPoints, DripRain, DripRegion, Drips, SetDrip};
 use downpour_sim::field::FallingDrop;
-use downpour_sim::impacts::Impact;
 use downpour_sim::shelter::Obstacles;
 use downpour_sim::view::View;
 use downpour_trace::data::SceneData;
@@ -18,9 +17,6 @@ use super::ShowerError;
 
 /// Maximum number of drips of a picture.
 const MAX_LISTED: u32 = 1 << 18;
-
-/// Distance up to which drips splash visibly, m.
-const SPLASHES_M: f64 = 30.0;
 
 /// Drips of a scene.
 #[derive(Clone, Debug)]
@@ -84,18 +80,6 @@ impl Dripping {
         let view = View { max_drops: view.max_drops.min(MAX_LISTED), ..*view };
         let obstacles = super::obstacles(stage);
         Ok(self.drips(stage)?.visible(&obstacles, &view, least_pixels, time_s)?)
-    }
-
-    /// Impacts of drips about a picture within a span of time in seconds.
-    pub(super) fn impacts(
-        &self,
-        stage: &Stage,
-        view: &View,
-        span_s: [f64; 2],
-    ) -> Result<Vec<Impact>, ShowerError> {
-        let reach = DVec3::splat(SPLASHES_M);
-        let (low, high) = (view.eye - reach, view.eye + reach);
-        Ok(self.drips(stage)?.impacts(&super::obstacles(stage), low, high, span_s, 0.0)?)
     }
 
     /// The drips near the eye of a stage, in the scene that was seen first.
