@@ -8,7 +8,7 @@ use crate::common::{INVOCATION, OPS, PACKING};
 use crate::drop::oscillation::OSCILLATION;
 use crate::drop::shape::SHAPE;
 use crate::mask::WOBBLE;
-use crate::sim::field::{EYE_DROP, FIELD_CONSTANTS};
+use crate::sim::field::EYE_DROP;
 use crate::{Kernel, Module};
 
 /// Every module of this file.
@@ -416,7 +416,6 @@ pub static PROJECT: Module = Module {
         &INVOCATION,
         &OPS,
         &EYE_DROP,
-        &FIELD_CONSTANTS,
         &RAIN_CONSTANTS,
         &PROJECT_TABLES,
         &CAMERA,

@@ -12,7 +12,7 @@ struct EyeDrop {
     id: u32,
     // When it is there, s from the time of the picture.
     present: vec2f,
-    // Terminal speed, m/s; FIELD_SPLASH for a splash.
+    // Terminal speed, m/s; below 0 (FIELD_SPLASH) for a splash.
     speed: f32,
     // Lower half of its id.
     id_low: u32,

@@ -83,7 +83,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         with: &[],
         overrides: &[],
         text: None,
-        tol: tol.clone(),
+        tol,
         run,
     };
     vec![
