@@ -70,7 +70,7 @@ const GOLDENS: [Golden; 15] = [
 const MAX_FLIP: f32 = 0.02;
 
 /// Most bytes of one picture.
-const MAX_BYTES: u64 = 512 << 10;
+const MAX_BYTES: u64 = 640 << 10;
 
 fn main() -> ExitCode {
     let arguments = Arguments::from_args();
