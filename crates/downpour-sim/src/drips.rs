@@ -37,7 +37,6 @@
 
 mod clock;
 mod emitter;
-mod facets;
 mod fall;
 mod points;
 mod runoff;
@@ -52,20 +51,17 @@ use rayon::prelude::*;
 use clock::Clock;
 pub use clock::DripRain;
 use emitter::{Emitter, Query};
-use facets::Facets;
 use fall::MAX_FALL_S;
 pub use points::{DripPoint, DripPoints, MAX_POINTS};
 pub use surfaces::{CELL_M, DripRegion, MAX_CELLS};
 
 use crate::SimError;
+use crate::facets::Facets;
 use crate::falling::FallingDrop;
 use crate::field::check_time;
-use crate::impacts::Impact;
+use crate::impacts::{Impact, check_span};
 use crate::shelter::Obstacles;
 use crate::view::{View, within};
-
-/// Maximum span of time of a query of impacts, s.
-const MAX_SPAN_S: f64 = 60.0;
 
 /// Points that drip less often than this do not drip, per second.
 const MIN_PER_S: f64 = 1.0 / 900.0;
@@ -221,10 +217,8 @@ impl Drips {
         span_s: [f64; 2],
         min_diameter: f64,
     ) -> Result<Vec<Impact>, SimError> {
+        check_span(span_s)?;
         let [begin, end] = span_s;
-        check_time(begin)?;
-        check_time(end)?;
-        downpour_math::in_range("span of time", end - begin, "s", &(0.0..=MAX_SPAN_S), 1.0, "0 to 60")?;
         let facets = Facets::new(obstacles);
         let query = Query { obstacles, facets: &facets, wind: &self.options.wind };
         let reach = self.reach([begin - MAX_FALL_S, end]);

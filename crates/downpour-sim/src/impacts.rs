@@ -29,7 +29,6 @@ mod places;
 mod splashes;
 mod ways;
 
-use downpour_bvh::Hit;
 use downpour_math::{OutOfRange, in_range};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -38,6 +37,7 @@ use self::places::Places;
 pub use self::splashes::SplashOptions;
 use self::ways::Ways;
 use crate::SimError;
+use crate::facets::Facets;
 use crate::field::{Class, RainField, check_time};
 use crate::shelter::{Obstacles, SkyPaths};
 use crate::view::Bounds;
@@ -81,7 +81,7 @@ impl RainField {
         let all = |class: &Class| {
             (class.largest >= min_diameter).then_some((Bounds { low, high }, |_: &Bounds| true))
         };
-        let mut impacts = self.impacts_of(&Surfaces::new(obstacles), span_s, all, |_| true)?;
+        let mut impacts = self.impacts_of(&Facets::new(obstacles), span_s, all, |_| true)?;
         impacts.retain(|impact| f64::from(impact.diameter) >= min_diameter);
         Ok(impacts)
     }
@@ -90,16 +90,14 @@ impl RainField {
     /// it that the function beside it wants.
     fn impacts_of<P: Fn(&Bounds) -> bool>(
         &self,
-        surfaces: &Surfaces<'_>,
+        facets: &Facets<'_>,
         span_s: [f64; 2],
         bounds_of: impl Fn(&Class) -> Option<(Bounds, P)>,
         wanted: impl Fn(u64) -> bool + Sync,
     ) -> Result<Vec<Impact>, SimError> {
-        let obstacles = surfaces.obstacles;
+        let obstacles = facets.obstacles;
         let [begin, end] = span_s;
-        check_time(begin)?;
-        check_time(end)?;
-        in_range("span of time", end - begin, "s", &(0.0..=MAX_SPAN_S), 1.0, "0 to 60")?;
+        check_span(span_s)?;
         let Some(root) = obstacles.nodes.first().filter(|_| !obstacles.triangles.is_empty()) else {
             return Ok(Vec::new());
         };
@@ -147,7 +145,7 @@ impl RainField {
                 if !(within && paths.shelter_is_open(start.as_vec3(), start, speed, velocity)) {
                     return None;
                 }
-                let normal = surfaces.normal(&hit, velocity);
+                let normal = facets.facing(&hit, velocity);
                 Some(Impact { position, normal, velocity, diameter: drop.diameter, id: drop.id, time_s })
             })
         };
@@ -156,39 +154,12 @@ impl RainField {
     }
 }
 
-/// Surfaces of obstacles, with their triangles by number.
-struct Surfaces<'a> {
-    obstacles: &'a Obstacles<'a>,
-    /// Index of the triangle of each number, unless they are sorted by number.
-    by_number: Option<Vec<u32>>,
-}
-
-impl<'a> Surfaces<'a> {
-    fn new(obstacles: &'a Obstacles<'a>) -> Self {
-        let triangles = obstacles.triangles;
-        let in_order = (0u32..).zip(triangles).all(|(k, triangle)| triangle.index == k);
-        let by_number = (!in_order).then(|| {
-            let most = triangles.iter().map(|triangle| triangle.index as usize).max().unwrap_or(0);
-            let mut indices = vec![0; most + 1];
-            for (k, triangle) in (0u32..).zip(triangles) {
-                indices[triangle.index as usize] = k;
-            }
-            indices
-        });
-        Self { obstacles, by_number }
-    }
-
-    /// Normal of a hit surface on the side that a drop of a velocity came from.
-    fn normal(&self, hit: &Hit, velocity: Vec3) -> Vec3 {
-        let index = match &self.by_number {
-            None => Some(hit.triangle),
-            Some(indices) => indices.get(hit.triangle as usize).copied(),
-        };
-        let triangle = index.and_then(|index| self.obstacles.triangles.get(index as usize));
-        let facet = triangle.map_or(Vec3::Y, |t| Vec3::from(t.edge_1).cross(t.edge_2.into()));
-        let normal = facet.normalize_or(Vec3::Y);
-        if normal.dot(velocity) > 0.0 { -normal } else { normal }
-    }
+/// Fails for a span of time that is too long, or of times that are out of range.
+pub(crate) fn check_span([begin, end]: [f64; 2]) -> Result<(), SimError> {
+    check_time(begin)?;
+    check_time(end)?;
+    in_range("span of time", end - begin, "s", &(0.0..=MAX_SPAN_S), 1.0, "0 to 60")?;
+    Ok(())
 }
 
 fn check_box(low: DVec3, high: DVec3) -> Result<(), SimError> {

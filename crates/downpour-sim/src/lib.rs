@@ -18,6 +18,7 @@ mod drift;
 pub mod drips;
 pub mod enter;
 mod error;
+mod facets;
 mod falling;
 pub mod field;
 mod fill;

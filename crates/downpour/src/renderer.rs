@@ -151,14 +151,15 @@ impl Renderer {
         check_size(weather.size)?;
         options.atlas = atlas_of(&weather, options.atlas)?;
         let first = Stage::new(&weather, &loaded, options.first_s)?;
-        let masks = DropMasks::of_weather(&weather, &loaded)?;
-        let masks = if let Some(atlas) = &options.atlas { masks.with_atlas(atlas) } else { masks };
         let mut shower = Shower::new(&weather)?;
-        if loaded.is_animated() {
-            shower.find_drips(&Stage::new(&weather, &loaded, 0.0)?)?;
-        } else {
+        let masks = DropMasks::of_weather(&weather, &loaded)?;
+        let masks = if shower.has_splashes() { masks.with_splashes_of(&weather)? } else { masks };
+        let masks = if let Some(atlas) = &options.atlas { masks.with_atlas(atlas) } else { masks };
+        if !loaded.is_animated() {
             // The files have become buffers.
             loaded.scene = Scene::default();
+        } else if shower.has_drips() {
+            shower.find_drips(&Stage::new(&weather, &loaded, 0.0)?)?;
         }
         let drawer = Drawer::new(device)?;
         Ok(Self {

@@ -112,6 +112,18 @@ impl Shower {
         self.dripping.as_ref().map_or(Ok(Vec::new()), |dripping| dripping.visible(stage, view, least, time_s))
     }
 
+    /// True if drops splash: those in closed form, where there is rain.
+    #[must_use]
+    pub fn has_splashes(&self) -> bool {
+        self.is_closed_form() && self.splashes.is_some() && self.weather.rain.rate_mm_h > 0.0
+    }
+
+    /// True if something may drip.
+    #[must_use]
+    pub fn has_drips(&self) -> bool {
+        self.dripping.is_some()
+    }
+
     /// True if the drops are found in closed form, and not step by step.
     #[must_use]
     pub fn is_closed_form(&self) -> bool {
@@ -148,7 +160,9 @@ impl Shower {
                 let mut visible = field.visible_among(&obstacles, &view, time_s)?;
                 let least = visible.resolved.least_pixels;
                 visible.drops.extend(field.bounced(&obstacles, &view, least, time_s, &self.bounce)?);
-                visible.drops.extend(splashed(field, &self.splashes, &obstacles, &view, time_s)?);
+                if let Some(splashes) = &self.splashes {
+                    visible.drops.extend(field.splashes(&obstacles, &view, time_s, splashes)?);
+                }
                 visible
             }
             Form::Stepped(stepped) => stepped.at(scenery, stage, time_s, passed)?,
@@ -183,7 +197,9 @@ impl Shower {
         let obstacles = obstacles(stage);
         let mut droplets = field.bounced(&obstacles, &view, least, time_s, &self.bounce)?;
         droplets.extend(self.drips(stage, &view, least, time_s)?);
-        droplets.extend(splashed(field, &self.splashes, &obstacles, &view, time_s)?);
+        if let Some(splashes) = &self.splashes {
+            droplets.extend(field.splashes(&obstacles, &view, time_s, splashes)?);
+        }
         let pane = pane_plane(&self.weather, &stage.viewpoint)?;
         if let Some(pane) = &pane {
             keep_outside(&mut droplets, pane, view.eye);
@@ -267,20 +283,6 @@ pub(crate) fn fall_speed(sizes: &DropSizeDistribution) -> f64 {
 /// Rain in closed form.
 fn closed(law: &DropSizeDistribution, rain: &Rain, wind: UniformWind) -> Result<Form, ShowerError> {
     Ok(Form::Closed(Arc::new(RainField::new(law, rain.seed)?.with_wind(wind))))
-}
-
-/// Crowns of the drops that have fallen from the sky.
-fn splashed(
-    field: &RainField,
-    splashes: &Option<SplashOptions>,
-    obstacles: &Obstacles<'_>,
-    view: &View,
-    time_s: f64,
-) -> Result<Vec<FallingDrop>, ShowerError> {
-    match splashes {
-        Some(splashes) => Ok(field.splashes(obstacles, view, time_s, splashes)?),
-        None => Ok(Vec::new()),
-    }
 }
 
 /// Splashes of a weather, if it has any.

@@ -20,13 +20,18 @@ impl DropMasks {
     /// [`MaskError`] if the air is outside what the laws know, or as [`drop_model`].
     pub fn of_weather(weather: &Weather, loaded: &Loaded) -> Result<Self, MaskError> {
         let index = index_of_water(&weather.rain.air)?;
-        let masks = match drop_model(weather, loaded)? {
-            Some(model) => Self::trace_model(index, &model)?,
-            None => Self::trace_shapes(index, weather.rain.drop_shape.table())?,
-        };
-        // Splashes are on what stands in the way of the rain.
-        let splashes = weather.splashes.is_enabled && weather.rain.rate_mm_h > 0.0;
-        if splashes { masks.with_splashes(index) } else { Ok(masks) }
+        match drop_model(weather, loaded)? {
+            Some(model) => Self::trace_model(index, &model),
+            None => Self::trace_shapes(index, weather.rain.drop_shape.table()),
+        }
+    }
+
+    /// Returns the masks with those of the splashes of a weather behind them.
+    ///
+    /// # Errors
+    /// As [`DropMasks::of_weather`].
+    pub fn with_splashes_of(self, weather: &Weather) -> Result<Self, MaskError> {
+        self.with_splashes(index_of_water(&weather.rain.air)?)
     }
 
     /// Traces the masks of drops in an air: of its temperature, but of no colder one than the refractive index is known for.

@@ -8,11 +8,11 @@ use downpour_wind::UniformWind;
 use glam::DVec3;
 
 use super::clock::{Clock, DripRain};
-use super::facets::Facets;
 use super::fall::{Fall, Landing, MAX_FALL_S};
 use super::points::DripPoint;
 use super::{DripOptions, MIN_PER_S};
 use crate::SimError;
+use crate::facets::Facets;
 use crate::falling::{DropKind, FallingDrop};
 use crate::impacts::Impact;
 use crate::shelter::Obstacles;

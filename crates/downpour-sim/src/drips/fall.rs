@@ -5,7 +5,7 @@ use downpour_math::ops::f64 as ops;
 use downpour_wind::UniformWind;
 use glam::{DVec3, Vec3};
 
-use super::facets::Facets;
+use crate::facets::Facets;
 use crate::shelter::{Obstacles, met};
 
 /// Interval at which a path is divided, s.
@@ -78,8 +78,7 @@ impl<'a> Fall<'a> {
             let to = self.at(f64::from(step) * FINE_S).0 - obstacles.origin;
             let velocity = ((to - from) / FINE_S).as_vec3();
             if let Some(hit) = met(obstacles, from.as_vec3(), velocity, FINE_S as f32) {
-                let normal = facets.normal(&hit);
-                let normal = if normal.dot(velocity) > 0.0 { -normal } else { normal };
+                let normal = facets.facing(&hit, velocity);
                 // The path curves: along it the surface is met where the chord has gone as far down.
                 let after_s = self.curved(begin_s, f64::from(hit.distance));
                 return Some(Landing { after_s, normal: Some(normal) });

@@ -6,10 +6,10 @@ use downpour_math::rng::{rng_draw, rng_unit};
 use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
 
-use super::facets::Facets;
 use super::runoff::{Outflow, runoff};
 use super::surfaces::{CELL_M, DripRegion, Surfaces};
 use crate::SimError;
+use crate::facets::Facets;
 use crate::shelter::{Obstacles, met};
 
 /// Minimum distance between drip points, m.

@@ -6,9 +6,10 @@ use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_shaders::sim::step::{STEP_CLEAR, VOLUME_RADIUS};
 use glam::DVec3;
 
-use super::{Impact, MAX_SPAN_S, Surfaces};
+use super::{Impact, MAX_SPAN_S};
 use crate::SimError;
 use crate::drift::Drift;
+use crate::facets::Facets;
 use crate::falling::{DropKind, FallingDrop};
 use crate::field::{Class, RainField, check_time};
 use crate::motion::motion_bounce;
@@ -60,7 +61,7 @@ impl RainField {
         // In slices of time: within one, the wind has displaced all droplets similarly.
         let span = longest + view.shutter_s;
         let slices = (span / SLICE_S).ceil().max(1.0);
-        let surfaces = Surfaces::new(obstacles);
+        let facets = Facets::new(obstacles);
         let mut impacts = Vec::new();
         for slice in 0..slices as u32 {
             let ages = [slice, slice + 1].map(|k| f64::from(k) * span / slices - half);
@@ -70,7 +71,7 @@ impl RainField {
                 Some((origins.bounds, move |place: &Bounds| origins.may_be_in(place, view, &swept_sides)))
             };
             let span = [time_s - ages[1], time_s - ages[0]];
-            impacts.extend(self.impacts_of(&surfaces, span, origins, sent_up)?);
+            impacts.extend(self.impacts_of(&facets, span, origins, sent_up)?);
         }
         let shown = impacts.iter().filter_map(|impact| {
             let droplet = Droplet::of(self, impact, bounce)?;

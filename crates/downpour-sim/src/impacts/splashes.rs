@@ -4,8 +4,9 @@ use downpour_drop::splash::{Splash, SplashLaw, crown};
 use downpour_math::in_range;
 use downpour_math::rng::{rng_draw, rng_unit};
 
-use super::{Impact, Surfaces};
+use super::Impact;
 use crate::SimError;
+use crate::facets::Facets;
 use crate::falling::{DropKind, FallingDrop};
 use crate::field::{Class, RainField, check_time};
 use crate::shelter::Obstacles;
@@ -73,7 +74,7 @@ impl RainField {
             (range >= view.near).then(|| (view.bounds(range, radius), in_picture))
         };
         let impacts =
-            self.impacts_of(&Surfaces::new(obstacles), [time_s - LONGEST_S, time_s], bounds, |_| true)?;
+            self.impacts_of(&Facets::new(obstacles), [time_s - LONGEST_S, time_s], bounds, |_| true)?;
         let mut crowns: Vec<FallingDrop> =
             impacts.iter().filter_map(|impact| options.crown(impact, view, time_s)).collect();
         if crowns.len() > MOST {

@@ -8,14 +8,14 @@ use glam::Vec3;
 use crate::shelter::Obstacles;
 
 /// Triangles of obstacles by their numbers.
-pub(super) struct Facets<'a> {
-    obstacles: &'a Obstacles<'a>,
+pub(crate) struct Facets<'a> {
+    pub(crate) obstacles: &'a Obstacles<'a>,
     /// Index of the triangle of each number, unless they are sorted by number; made for the first normal.
     by_number: OnceLock<Option<Vec<u32>>>,
 }
 
 impl<'a> Facets<'a> {
-    pub(super) fn new(obstacles: &'a Obstacles<'a>) -> Self {
+    pub(crate) fn new(obstacles: &'a Obstacles<'a>) -> Self {
         Self { obstacles, by_number: OnceLock::new() }
     }
 
@@ -36,7 +36,7 @@ impl<'a> Facets<'a> {
     }
 
     /// Unit normal of the front of a triangle.
-    pub(super) fn normal(&self, hit: &Hit) -> Vec3 {
+    pub(crate) fn normal(&self, hit: &Hit) -> Vec3 {
         let index = match self.by_number() {
             None => Some(hit.triangle),
             Some(indices) => indices.get(hit.triangle as usize).copied(),
@@ -44,5 +44,11 @@ impl<'a> Facets<'a> {
         let triangle = index.and_then(|index| self.obstacles.triangles.get(index as usize));
         let facet = triangle.map_or(Vec3::Y, |t| Vec3::from(t.edge_1).cross(t.edge_2.into()));
         facet.normalize_or(Vec3::Y)
+    }
+
+    /// Unit normal on the side that a drop of a velocity came from.
+    pub(crate) fn facing(&self, hit: &Hit, velocity: Vec3) -> Vec3 {
+        let normal = self.normal(hit);
+        if normal.dot(velocity) > 0.0 { -normal } else { normal }
     }
 }
