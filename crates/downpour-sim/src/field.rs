@@ -20,6 +20,8 @@
 //! What decides which drops there are is done in integers, so that a GPU finds the same ones (`chain`): diameters are multiples of
 //! 1 nm, terminal speeds those of the law to 0.003 % (0.02 % where it jumps).
 //!
+//! A rate that changes leaves out drops of the heaviest rain, each for all of its fall (`thinning`).
+//!
 //! Limit: drops of one chain share their size, H apart; H is about 8 m per millimetre of diameter, up to 64 m.
 
 #[doc(hidden)]
@@ -28,19 +30,23 @@ pub mod chain;
 #[doc(hidden)]
 pub mod frame;
 mod room;
+#[doc(hidden)]
+pub mod thinning;
 
 use downpour_drop::distribution::{DropSizeDistribution, SampledBy};
 use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_math::rng::{rng_draw, rng_pcg4d, seed_words};
 use downpour_math::{OutOfRange, in_range};
 use downpour_shaders::sim::field::{
-    FIELD_CHAIN, FIELD_DIAMETER_STEP, FIELD_PLACE, FIELD_RADIUS, FIELD_RATE_STEP,
+    FIELD_CHAIN, FIELD_DIAMETER_STEP, FIELD_PLACE, FIELD_RADIUS, FIELD_RATE_STEP, FIELD_THIN,
 };
-use downpour_wind::{UniformWind, Wind};
+use downpour_wind::{Keyed, UniformWind, Wind};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 use self::chain::{ChainCount, ChainSizes, FieldTime, field_fallen};
+use self::thinning::Thinning;
 use crate::SimError;
 use crate::drift::Drift;
 #[doc(hidden)]
@@ -61,6 +67,8 @@ pub const MAX_TIME_S: f64 = 1.0e6;
 /// Drops of similar size.
 #[derive(Clone, Debug)]
 pub(crate) struct Class {
+    /// Its number among the classes.
+    pub(crate) number: usize,
     pub(crate) seed: [u32; 2],
     pub(crate) largest: f64,
     /// Terminal speeds of the smallest and the largest drop, m/s.
@@ -81,6 +89,8 @@ pub struct RainField {
     pub(crate) classes: Vec<Class>,
     pub(crate) speed: TerminalSpeed,
     pub(crate) wind: UniformWind,
+    /// Drops that do not fall, of a rate that changes.
+    pub(crate) thinning: Option<Arc<Thinning>>,
 }
 
 /// Position and contents of a chain.
@@ -88,6 +98,9 @@ pub struct RainField {
 struct Chain {
     column: [u32; 2],
     index: u32,
+    /// Diameter and rate of fall, in units.
+    size: [u32; 2],
+    phase: u32,
     diameter: f32,
     speed: f64,
     /// Current height of the drop k = 0, metres.
@@ -103,32 +116,68 @@ impl RainField {
     /// # Errors
     /// [`SimError::Drop`] if the distribution cannot be divided into classes.
     pub fn new(rain: &DropSizeDistribution, seed: u64) -> Result<Self, SimError> {
+        Self::thinned(rain, seed, None)
+    }
+
+    /// Creates a rain whose rate changes: at `height_m` it has the rate in mm/h of each time, and at other heights that of the time at
+    /// which its drops pass there. `heaviest` is the distribution of the largest rate; the law of the others is the same. In a wind that
+    /// rises or falls, drops count as passing the height as they do in still air.
+    ///
+    /// # Errors
+    /// [`SimError::Drop`] for a rate that is none, or as in [`RainField::new`]; [`SimError::OutOfRange`] for a height beyond 100 km.
+    pub fn changing(
+        heaviest: &DropSizeDistribution,
+        rates_mm_h: &Keyed<f64>,
+        height_m: f64,
+        seed: u64,
+    ) -> Result<Self, SimError> {
+        Self::thinned(heaviest, seed, Some((rates_mm_h, height_m)))
+    }
+
+    fn thinned(
+        rain: &DropSizeDistribution,
+        seed: u64,
+        changes: Option<(&Keyed<f64>, f64)>,
+    ) -> Result<Self, SimError> {
         let options = rain.options();
         let speed = TerminalSpeed::new(options.fall_speed, &options.air);
-        let mut classes = Vec::new();
+        let mut spans: Vec<(u32, [f64; 2])> = Vec::new();
         if rain.rate_mm_h() > 0.0 {
-            for (k, [lower, upper]) in (0u32..).zip(rain.diameter_classes(CLASSES_PER_OCTAVE)) {
-                // A narrow last class would have too few drops.
-                if upper - lower < 2.0e-6 {
-                    continue;
-                }
-                let part = rain.restricted_to(lower, upper)?;
-                let mm = lower * 1.0e3;
-                let (edge, period) = ((0.25 * mm).clamp(0.05, 2.0), (8.0 * mm).clamp(2.0, 64.0));
-                let density = part.number_density();
-                classes.push(Class {
-                    seed: class_seed(seed, k),
-                    largest: upper,
-                    speeds: [lower, upper].map(|d| speed.at(d).unwrap_or(0.0)),
-                    density,
-                    sizes: ChainSizes::new(&part.sample_table(SampledBy::Number), &speed, period),
-                    count: ChainCount::new(density * edge * edge * period),
-                    edge,
-                    period,
-                });
-            }
+            spans.extend((0u32..).zip(rain.diameter_classes(CLASSES_PER_OCTAVE)));
         }
-        Ok(Self { classes, speed, wind: Wind::default().air().clone() })
+        // A narrow last class would have too few drops.
+        spans.retain(|(_, [lower, upper])| upper - lower >= 2.0e-6);
+        let sizes: Vec<[f64; 2]> = spans.iter().map(|span| span.1).collect();
+        let (mut thinning, needed) = match changes {
+            Some((rates, height)) => {
+                let (thinning, needed) = Thinning::new(rain, rates, height, &sizes)?;
+                (Some(thinning), needed)
+            }
+            None => (None, vec![1.0; sizes.len()]),
+        };
+        let mut classes = Vec::new();
+        for ((number, (k, [lower, upper])), needed) in spans.into_iter().enumerate().zip(needed) {
+            let part = rain.restricted_to(lower, upper)?;
+            let mm = lower * 1.0e3;
+            let (edge, period) = ((0.25 * mm).clamp(0.05, 2.0), (8.0 * mm).clamp(2.0, 64.0));
+            let density = part.number_density() * needed;
+            if let Some(thinning) = &mut thinning {
+                thinning.push([lower, upper], period);
+            }
+            classes.push(Class {
+                number,
+                seed: class_seed(seed, k),
+                largest: upper,
+                speeds: [lower, upper].map(|d| speed.at(d).unwrap_or(0.0)),
+                density,
+                sizes: ChainSizes::new(&part.sample_table(SampledBy::Number), &speed, period),
+                count: ChainCount::new(density * edge * edge * period),
+                edge,
+                period,
+            });
+        }
+        let thinning = thinning.map(Arc::new);
+        Ok(Self { classes, speed, wind: Wind::default().air().clone(), thinning })
     }
 
     /// Sets the wind of the rain: at time 0 its drops are where they would be in still air.
@@ -137,7 +186,7 @@ impl RainField {
         Self { wind, ..self }
     }
 
-    /// Number of drops per cubic metre.
+    /// Number of drops per cubic metre; of a rate that changes, no less than at any time.
     #[must_use]
     pub fn number_density(&self) -> f64 {
         self.classes.iter().map(|class| class.density).sum()
@@ -360,7 +409,7 @@ impl RainField {
         let time = FieldTime::new(time_s);
         for index in 0..class.count.field_count(key) {
             let [size, phase, ..] = rng_draw(key, index, 0, FIELD_CHAIN);
-            let [units, rate] = class.sizes.field_size(size);
+            let size @ [units, rate] = class.sizes.field_size(size);
             let diameter = units as f32 * FIELD_DIAMETER_STEP;
             let speed = f64::from(rate) * f64::from(FIELD_RATE_STEP) * class.period;
             let [carried, wind] = drift.of(speed);
@@ -368,10 +417,13 @@ impl RainField {
             // In periods, in units of 2^-32.
             let above = u64::from(phase).wrapping_sub(u64::from(whole) << 32 | u64::from(part)) as i64;
             let height = above as f64 / 4_294_967_296.0 * class.period + carried.y;
-            let chain = Chain { column: key, index, diameter, speed, height, carried, wind };
+            let chain = Chain { column: key, index, size, phase, diameter, speed, height, carried, wind };
             let first = ((bounds.low.y - height) / class.period).ceil() as i64;
             let last = ((bounds.high.y - height) / class.period).floor() as i64;
             for k in first..=last {
+                if self.thinning.as_deref().is_some_and(|thinning| !chain.falls(k, class, thinning)) {
+                    continue;
+                }
                 each(chain.drop(k, class, column), speed);
             }
         }
@@ -399,6 +451,12 @@ impl Class {
 }
 
 impl Chain {
+    /// True if a drop is among those of a rain whose rate changes.
+    fn falls(&self, k: i64, class: &Class, thinning: &Thinning) -> bool {
+        let [word, ..] = rng_draw(self.column, self.index, k as u32, FIELD_THIN);
+        thinning.keeps(class.number, self.size, [k as u32, self.phase], word)
+    }
+
     fn drop(&self, k: i64, class: &Class, column: [i64; 2]) -> FallingDrop {
         let [x, z, high, low] = rng_draw(self.column, self.index, k as u32, FIELD_PLACE);
         let unit = |word: u32| (f64::from(word) + 0.5) / 4_294_967_296.0;

@@ -10,6 +10,7 @@ use downpour_math::ops::f64 as ops;
 use downpour_sim::SimError;
 use downpour_sim::field::{FallingDrop, RainField};
 use downpour_sim::view::View;
+use downpour_wind::Keyed;
 use glam::DVec3;
 
 type Outcome = Result<(), Box<dyn std::error::Error>>;
@@ -184,5 +185,86 @@ fn no_rain_has_no_drops_and_bad_questions_have_no_answer() -> Outcome {
     }
     assert!(field.in_box(DVec3::ONE, DVec3::ZERO, 0.0).is_err());
     assert!(field.in_box(DVec3::splat(-1.0e6), DVec3::splat(1.0e6), 0.0).is_err());
+    Ok(())
+}
+
+/// Volume of the drops that pass a height in a time, per area, m: drops fall straight at their terminal speeds.
+fn caught(
+    field: &RainField,
+    height: f64,
+    [begin, end]: [f64; 2],
+    side: f64,
+) -> Result<f64, Box<dyn std::error::Error>> {
+    let low = DVec3::new(0.0, height, 0.0);
+    let drops = field.in_box(low, low + DVec3::new(side, 12.0 * (end - begin), side), begin)?;
+    let passes =
+        |drop: &&FallingDrop| drop.position.y - height < -f64::from(drop.velocity[1]) * (end - begin);
+    let volumes = drops.iter().filter(passes).map(|drop| f64::from(drop.diameter).powi(3));
+    Ok(std::f64::consts::FRAC_PI_6 * volumes.sum::<f64>() / (side * side))
+}
+
+/// From 0 to 50 mm/h in 10 s, and back to nothing at once.
+fn changing(height_m: f64) -> Result<RainField, Box<dyn std::error::Error>> {
+    let rates = Keyed::new(vec![(0.0, 0.0), (10.0, 50.0), (20.0, 50.0), (20.001, 0.0)])?;
+    Ok(RainField::changing(&rain(50.0)?, &rates, height_m, 5)?)
+}
+
+#[test]
+fn a_gauge_catches_the_rate_of_each_time() -> Outcome {
+    for height in [0.0, 100.0] {
+        let field = changing(height)?;
+        for (begin, expected) in [(2.0, 12.5), (4.5, 25.0), (9.0, 47.5), (15.0, 50.0)] {
+            let caught = caught(&field, height, [begin, begin + 1.0], 8.0)? * 3.6e6;
+            assert!((caught / expected - 1.0).abs() < 0.05, "{begin} s: {caught} of {expected} mm/h");
+        }
+        for dry in [-3.0, 20.5] {
+            assert_eq!(caught(&field, height, [dry, dry + 1.0], 8.0)?, 0.0, "{dry} s");
+        }
+    }
+    Ok(())
+}
+
+/// After the end at 20 s at a height of 100 m, a drop of 2 mm (6.5 m/s) takes 15 s to the ground, one of 0.5 mm (2.1 m/s) 48 s.
+#[test]
+fn large_drops_come_first_and_small_ones_last() -> Outcome {
+    let field = changing(100.0)?;
+    let sizes = |time: f64| -> Result<Vec<f32>, Box<dyn std::error::Error>> {
+        let drops = field.in_box(DVec3::new(0.0, 0.0, 0.0), DVec3::new(30.0, 1.0, 30.0), time)?;
+        Ok(drops.iter().map(|drop| drop.diameter * 1.0e3).collect())
+    };
+    let (first, last) = (sizes(16.0)?, sizes(45.0)?);
+    assert!(first.len() > 100 && first.iter().all(|&mm| mm > 1.7), "{first:?}");
+    assert!(last.len() > 100 && last.iter().all(|&mm| mm < 1.3), "{} drops", last.len());
+    assert!(sizes(10.0)?.is_empty());
+    Ok(())
+}
+
+/// Drops of one time are those of another, fallen: none comes or goes in the air.
+#[test]
+fn no_drop_of_a_changing_rate_comes_or_goes_in_the_air() -> Outcome {
+    let field = changing(0.0)?;
+    let (low, high) = (DVec3::new(0.0, 0.0, 0.0), DVec3::new(6.0, 20.0, 6.0));
+    let now = field.in_box(low, high, 4.0)?;
+    let later = field.in_box(low, high, 4.3)?;
+    let fallen = |drop: &FallingDrop| drop.position.y + 0.3 * f64::from(drop.velocity[1]);
+    let stay: Vec<u64> = sorted(now).iter().filter(|drop| fallen(drop) >= 0.0).map(|drop| drop.id).collect();
+    let was = |drop: &FallingDrop| drop.position.y - 0.3 * f64::from(drop.velocity[1]) < 20.0;
+    let found: Vec<u64> = sorted(later).iter().filter(|drop| was(drop)).map(|drop| drop.id).collect();
+    assert!(stay.len() > 1000);
+    let all: std::collections::BTreeSet<u64> = found.into_iter().collect();
+    let missing = stay.iter().filter(|id| !all.contains(id)).count();
+    // At the ends of the box positions are rounded.
+    assert!(missing <= 1 && all.len().abs_diff(stay.len()) <= 1, "{missing} of {}", stay.len());
+    Ok(())
+}
+
+#[test]
+fn a_rate_that_does_not_change_is_the_rain_of_that_rate() -> Outcome {
+    let (low, high) = (DVec3::splat(-3.0), DVec3::splat(3.0));
+    let plain = sorted(RainField::new(&rain(20.0)?, 5)?.in_box(low, high, 9.0)?);
+    let keyed = RainField::changing(&rain(20.0)?, &20.0.into(), 50.0, 5)?.in_box(low, high, 9.0)?;
+    assert!(plain.len() > 100 && plain == sorted(keyed));
+    let bad = RainField::changing(&rain(20.0)?, &20.0.into(), 2.0e5, 5);
+    assert!(bad.is_err_and(|error| error.to_string().contains("200000")));
     Ok(())
 }

@@ -62,9 +62,9 @@ impl SceneWetness {
     /// The wetness of a weather at a time in s, for buffers relative to `origin`. `None`: all is dry.
     #[must_use]
     pub fn of(weather: &Weather, time_s: f64, origin: DVec3) -> Option<Self> {
-        let at = weather.wetness.at(&weather.rain, time_s)?;
+        let at = weather.wetness_at(time_s)?;
         // The wind that the rain has come with: that of time 0, without gusts.
-        let velocity = weather.wind.air().mean(0.0) - DVec3::Y * fall_speed(&weather.rain);
+        let velocity = weather.wind.air().mean(0.0) - DVec3::Y * fall_speed(&weather.heaviest_rain());
         let towards = (-velocity).normalize_or(DVec3::Y).as_vec3();
         let shift = origin.map(|x| x.rem_euclid(SHIFT_M)).as_vec3();
         Some(Self { at, towards, shift })

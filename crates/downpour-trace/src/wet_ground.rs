@@ -55,9 +55,13 @@ impl WetGround {
         if weather.puddles.is_empty() {
             return Ok(None);
         }
-        let rain = &weather.rain;
-        let law = (rain.rate_mm_h > 0.0).then(|| rain.sizes());
-        let ripples = Ripples::new(law.transpose()?.as_ref(), rain.seed ^ SEED, first_s)?;
+        let rain = weather.heaviest_rain();
+        let law = (rain.rate_mm_h > 0.0).then(|| rain.sizes()).transpose()?;
+        let seed = rain.seed ^ SEED;
+        let ripples = match (&law, weather.keys.rate()) {
+            (Some(law), Some(rates)) => Ripples::changing(law, rates, seed, first_s)?,
+            _ => Ripples::new(law.as_ref(), seed, first_s)?,
+        };
         let masks = loaded.masks.iter().map(Option::as_ref).chain(std::iter::repeat(None));
         let (mut puddles, mut filled) = (Vec::new(), Vec::new());
         for (index, (puddle, mask)) in weather.puddles.iter().zip(masks).enumerate() {
@@ -147,17 +151,11 @@ fn given(weather: &Weather, index: usize, time_s: f64) -> Filling {
 /// The water that the rain of a weather has brought to hollows at a time: a function of time alone, in steps. Hollows under surfaces
 /// whose wetness is given, or that rain does not wet, are full.
 fn filling(weather: &Weather, seepage: f64, time_s: f64) -> Filling {
-    let Some([before, lost, since]) = weather.wetness.runoff(&weather.rain, time_s) else {
+    let Some([before, lost, since]) = weather.runoff(seepage, time_s) else {
         return Filling::Fraction(1.0);
     };
-    let dried_s = weather.wetness.rained_at(&weather.rain, time_s).dried_s;
-    let rained_s = if weather.rain.rate_mm_h > 0.0 { time_s.max(0.0) } else { 0.0 };
     let stepped = |depth: f64| ((depth / STEP_M).floor() * STEP_M) as f32;
-    Filling::Rain {
-        before_m: before as f32,
-        lost_m: stepped(lost + seepage * dried_s),
-        since_m: stepped((since - seepage * rained_s).max(0.0)),
-    }
+    Filling::Rain { before_m: before as f32, lost_m: stepped(lost), since_m: stepped(since) }
 }
 
 /// Depths from the red of a picture, linear: 1 is `deepest`.

@@ -38,7 +38,7 @@ impl Drips {
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct DripsTable {
-    enabled: Option<bool>,
+    pub(super) enabled: Option<bool>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]

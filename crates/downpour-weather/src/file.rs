@@ -11,7 +11,7 @@ use super::models::{Model, ModelTable};
 use super::presets;
 use super::puddle::{self, Puddle, PuddleTable};
 use super::quantity::{Exactly, Whole};
-use super::rain::{Rain, RainTable};
+use super::rain::{self, Rain, RainTable};
 use super::sky::{Sky, SkyTable, SunSource, SunTable};
 use super::splashes::{Splashes, SplashesTable};
 use super::streaks::StreaksTable;
@@ -82,7 +82,12 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
     let camera = Camera::checked(&tables.camera, &camera_keys, &positions)?;
     let lamps = numbered(&tables.light, |i, table| Lamp::checked(i, table, &positions))?;
     let (lights, lamp_keys): (Vec<_>, Vec<_>) = lamps.into_iter().unzip();
-    let rain = Rain::checked(&tables.rain, &positions)?;
+    let (rain, rates) = Rain::checked(&tables.rain, &positions)?;
+    let heaviest = Rain { rate_mm_h: rates.as_ref().map_or(rain.rate_mm_h, rain::most), ..rain };
+    if rates.is_some() && tables.drips.enabled == Some(true) {
+        let allowed = "false, or a rate without keys";
+        return Err(positions.bad("drips.enabled", "drips of a rain whose rate changes", allowed));
+    }
     let streaks = tables.streaks.checked();
     let drop_model = tables.rain.drop_model(&streaks, &positions)?;
     let default = Weather::default();
@@ -95,7 +100,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         splashes: Splashes::checked(&tables.splashes, &positions)?,
         drips: Drips::checked(&tables.drips, &tables.drip),
         lightning: Lightning::checked(&tables.lightning, &tables.flash, rain.seed, &positions)?,
-        glass: tables.glass.map(|glass| glass.checked(&rain, &positions)).transpose()?,
+        glass: tables.glass.map(|glass| glass.checked(&heaviest, &positions)).transpose()?,
         glow: tables.glow.checked(),
         rain,
         drop_model,
@@ -108,7 +113,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         wind_box: tables.wind_field.checked(&positions)?,
         streaks,
         puddles,
-        keys: WeatherKeys::new(camera_keys, sky_keys, sun_keys, lamp_keys, fills),
+        keys: WeatherKeys::new(rates, camera_keys, sky_keys, sun_keys, lamp_keys, fills),
         size: tables.output.size.map_or(default.size, |Exactly(size)| size.map(|Whole(side)| side)),
     })
 }

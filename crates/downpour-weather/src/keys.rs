@@ -2,14 +2,17 @@
 
 use super::camera::CameraKeys;
 use super::lamps::LampKeys;
+use super::rain::most;
 use super::sky::{SkyKeys, SunKeys};
-use super::{PuddleFill, PuddleShape, Weather};
+use super::{PuddleFill, PuddleShape, Rain, Weather, WetnessAt};
 use downpour_wind::Keyed;
 use std::borrow::Cow;
 
 /// Values of a weather that change over time; empty for a weather without keys.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WeatherKeys {
+    /// Rain rate, mm/h.
+    rate: Option<Keyed<f64>>,
     camera: CameraKeys,
     sky: Option<SkyKeys>,
     sun: Option<SunKeys>,
@@ -21,6 +24,7 @@ pub struct WeatherKeys {
 
 impl WeatherKeys {
     pub(super) fn new(
+        rate: Option<Keyed<f64>>,
         camera: CameraKeys,
         sky: SkyKeys,
         sun: Option<SunKeys>,
@@ -30,6 +34,7 @@ impl WeatherKeys {
         let lamps = lamps.into_iter().enumerate();
         let fills = fills.into_iter().enumerate();
         Self {
+            rate,
             camera: camera.moving(),
             sky: sky.moving(),
             sun: sun.and_then(SunKeys::moving),
@@ -44,6 +49,12 @@ impl WeatherKeys {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
+    }
+
+    /// Rain rate over time, mm/h, if it changes.
+    #[must_use]
+    pub fn rate(&self) -> Option<&Keyed<f64>> {
+        self.rate.as_ref()
     }
 
     /// True if the light of the sky or the sun changes.
@@ -92,6 +103,7 @@ impl Weather {
             return Cow::Borrowed(self);
         }
         let mut weather = self.clone();
+        weather.rain = self.rain_at(time_s);
         weather.camera = weather.camera.at(&self.keys.camera, time_s);
         if let Some(sky) = &self.keys.sky {
             weather.sky = weather.sky.at(sky, time_s);
@@ -112,6 +124,44 @@ impl Weather {
             }
         }
         Cow::Owned(weather)
+    }
+
+    /// The rain at a time in seconds.
+    #[must_use]
+    pub fn rain_at(&self, time_s: f64) -> Rain {
+        let rate_mm_h = self.keys.rate.as_ref().map_or(self.rain.rate_mm_h, |rate| rate.at(time_s));
+        Rain { rate_mm_h, ..self.rain }
+    }
+
+    /// The rain at its largest rate.
+    #[must_use]
+    pub fn heaviest_rain(&self) -> Rain {
+        Rain { rate_mm_h: self.keys.rate.as_ref().map_or(self.rain.rate_mm_h, most), ..self.rain }
+    }
+
+    /// Rain rate over time, mm/h: one key for a rate that does not change.
+    #[must_use]
+    pub fn rates_mm_h(&self) -> Cow<'_, Keyed<f64>> {
+        self.keys.rate.as_ref().map_or_else(|| Cow::Owned(self.rain.rate_mm_h.into()), Cow::Borrowed)
+    }
+
+    /// Sets a rain rate in mm/h for all times.
+    pub fn set_rate(&mut self, rate_mm_h: f64) {
+        self.rain.rate_mm_h = rate_mm_h;
+        self.keys.rate = None;
+    }
+
+    /// Wetness of surfaces at a time in s. `None`: all is dry. Before time 0 it is that of time 0.
+    #[must_use]
+    pub fn wetness_at(&self, time_s: f64) -> Option<WetnessAt> {
+        self.wetness.at(&self.rates_mm_h(), time_s)
+    }
+
+    /// Water that has run off level ground at a time in s, m: before the last time in which nothing fell, lost by drying and by seepage
+    /// (m/s) in that time, and after it, less what seeped away. `None` where no law says: hollows have been filled since long.
+    #[must_use]
+    pub fn runoff(&self, seepage_m_s: f64, time_s: f64) -> Option<[f64; 3]> {
+        self.wetness.runoff(&self.rates_mm_h(), seepage_m_s, time_s)
     }
 
     /// Factor of the exposure of a picture at a time in seconds, over that of the automatic exposure with

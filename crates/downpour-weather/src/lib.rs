@@ -74,7 +74,7 @@ pub use rain::{
 pub use sky::{Sky, SkySource, SunSource};
 pub use splashes::Splashes;
 pub use streaks::{StreakLook, Streaks};
-pub use wetness::{RAINED_S, RainedAt, Wetness, WetnessAt};
+pub use wetness::{RAINED_S, Wetness, WetnessAt};
 pub use wind::WindBox;
 
 /// Maximum size of a weather file, in bytes: 4 MiB.

@@ -32,6 +32,7 @@ macro_rules! ranges {
 
 ranges! {
     RateMmH: 1e-3, 500.0, "0, or 0.001 to 500 mm/h", or_zero;
+    RateHeightM: -1e4, 1e5, "-1e4 to 1e5 m";
     GammaShape: -3.0, 8.0, "-3 to 8";
     MedianMm: 0.2, 5.0, "0.2 to 5 mm";
     TemperatureC: -20.0, 40.0, "-20 to 40 Celsius";

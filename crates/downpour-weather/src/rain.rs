@@ -4,9 +4,10 @@ use super::fault::Positions;
 use super::file::path;
 use super::quantity::{
     BoxM, DropSize, Exactly, Fraction, GammaShape, In, MedianMm, OneMm, PositionM, PressureHpa, RadiusM,
-    RateMmH, ShortS, TemperatureC, Whole,
+    RateHeightM, RateMmH, ShortS, TemperatureC, Whole,
 };
 use super::streaks::Streaks;
+use super::wind::keys::{NumberKeys, number_or};
 use downpour_drop::DropError;
 use downpour_drop::air::Air;
 use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution, DropSizeLaw};
@@ -14,6 +15,7 @@ use downpour_drop::fall_speed::FallSpeedModel;
 use downpour_drop::shape::ShapeTable;
 use downpour_scene::error::SceneError;
 use downpour_scene::uri::RelativePath;
+use downpour_wind::Keyed;
 use serde::Deserialize;
 
 /// Default shape of the gamma law.
@@ -233,8 +235,10 @@ impl Default for RainCylinder {
 /// Rain of a weather.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rain {
-    /// Rain rate in mm/h: 0 (dry), or 0.001 to 500.
+    /// Rain rate in mm/h: 0 (dry), or 0.001 to 500. Keys give it over time ([`WeatherKeys::rate`](crate::WeatherKeys::rate)).
     pub rate_mm_h: f64,
+    /// Height, m, at which a rate that changes is that of its time; elsewhere it is that of the time at which drops pass this height.
+    pub rate_height_m: f64,
     /// Law of the drop sizes.
     pub law: DropSizeLaw,
     /// Same seed, same drops.
@@ -272,6 +276,7 @@ impl Default for Rain {
     fn default() -> Self {
         Self {
             rate_mm_h: 10.0,
+            rate_height_m: 0.0,
             law: DropSizeLaw::default(),
             seed: 0,
             air: Air::standard(),
@@ -294,7 +299,8 @@ impl Default for Rain {
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RainTable {
-    rate_mm_h: Option<In<RateMmH>>,
+    rate_mm_h: Option<NumberKeys<RateMmH>>,
+    rate_height_m: Option<In<RateHeightM>>,
     distribution: Option<Distribution>,
     gamma_shape: Option<In<GammaShape>>,
     median_diameter_mm: Option<In<MedianMm>>,
@@ -405,9 +411,19 @@ impl Rain {
         DropSizeDistribution::with_options(self.law, self.rate_mm_h, &self.options())
     }
 
-    pub(super) fn checked(table: &RainTable, positions: &Positions<'_>) -> Result<Self, SceneError> {
+    /// The rain at time 0, and its rate over time if that changes.
+    pub(super) fn checked(
+        table: &RainTable,
+        positions: &Positions<'_>,
+    ) -> Result<(Self, Option<Keyed<f64>>), SceneError> {
         let default = Self::default();
-        let rate_mm_h = table.rate_mm_h.map_or(default.rate_mm_h, |rate| rate.0);
+        let rates = number_or(table.rate_mm_h.as_ref(), default.rate_mm_h, "rain.rate_mm_h", positions)?;
+        let (rate_mm_h, most_mm_h) = (rates.at(0.0), most(&rates));
+        let rates = Some(rates).filter(|rates| rates.keys().len() > 1);
+        if rates.is_none() && table.rate_height_m.is_some() {
+            let found = "the height of a rate that does not change";
+            return Err(positions.bad("rain.rate_height_m", found, "with keys of rain.rate_mm_h"));
+        }
         let temperature_c = table.temperature_c.map_or(default.air.temperature_c(), |t| t.0);
         let pressure_pa = table.pressure_hpa.map_or(default.air.pressure_pa(), |p| p.0 * 100.0);
         let air = Air::new(temperature_c, pressure_pa);
@@ -417,7 +433,7 @@ impl Rain {
             None => default.law,
             Some(Distribution::MarshallPalmer) => DropSizeLaw::MarshallPalmer1948,
             Some(Distribution::Best) => DropSizeLaw::Best1950,
-            Some(Distribution::Gamma) => table.gamma(rate_mm_h, positions)?,
+            Some(Distribution::Gamma) => table.gamma(most_mm_h, positions)?,
             Some(Distribution::FeingoldLevin) => DropSizeLaw::FeingoldLevin1986,
             Some(Distribution::JossDrizzle) => DropSizeLaw::Joss1968Drizzle,
             Some(Distribution::JossWidespread) => DropSizeLaw::Joss1968Widespread,
@@ -437,6 +453,11 @@ impl Rain {
         // Drops with a count are in a box.
         let usual = if table.drops.is_some() { RainVolume::Box } else { RainVolume::default() };
         let volume = table.volume.unwrap_or(usual);
+        let steps = !matches!(volume, RainVolume::Auto | RainVolume::ClosedForm);
+        if rates.is_some() && table.drops.is_none() && steps {
+            let found = "keys of a rain that goes step by step";
+            return Err(positions.bad("rain.rate_mm_h", found, "a number, or volume = \"closed-form\""));
+        }
         let boxed = matches!(volume, RainVolume::Box | RainVolume::Tariq2007);
         for (key, given, of, allowed) in [
             ("rain.box_m", table.box_m.is_some(), boxed, "volume = \"box\" or \"tariq-2007\""),
@@ -453,6 +474,7 @@ impl Rain {
         }
         let rain = Self {
             rate_mm_h,
+            rate_height_m: table.rate_height_m.map_or(default.rate_height_m, |height| height.0),
             law,
             seed: table.seed.unwrap_or(default.seed),
             air,
@@ -470,8 +492,8 @@ impl Rain {
             extinction: table.extinction.unwrap_or_default(),
         };
         match table.drops {
-            None => Ok(rain),
-            Some(drops) => rain.counted(table, drops.count.0, positions),
+            None => Ok((rain, rates)),
+            Some(drops) => Ok((rain.counted(table, drops.count.0, positions)?, None)),
         }
     }
 
@@ -515,6 +537,11 @@ impl Rain {
         }
         Ok(Self { rate_mm_h, ..self })
     }
+}
+
+/// The largest rate over time, mm/h.
+pub(super) fn most(rates: &Keyed<f64>) -> f64 {
+    rates.keys().iter().fold(0.0, |most: f64, &(_, rate)| most.max(rate))
 }
 
 impl RainTable {

@@ -5,6 +5,7 @@ use super::quantity::{DryingS, Fraction, In, RainedMm, StorageMm, WetS};
 use super::rain::Rain;
 use downpour_drop::wetness::{DRYING_S, STORAGE_M, Wetting};
 use downpour_scene::error::SceneError;
+use downpour_wind::Keyed;
 use serde::Deserialize;
 
 /// Default time for which the rain has fallen before time 0, s.
@@ -58,15 +59,15 @@ pub struct WetnessAt {
     pub since: f64,
 }
 
-/// What has fallen until a time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RainedAt {
-    /// Depth of the rain before the time in which nothing fell, m.
-    pub before_m: f64,
-    /// Time in which nothing fell, s.
-    pub dried_s: f64,
-    /// Depth of the rain after it, m.
-    pub since_m: f64,
+/// A rain, and the time after it in which nothing fell.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Spell {
+    /// Depth of the rain, m.
+    rain_m: f64,
+    /// Time for which it fell, s; 0 for that before time 0.
+    rained_s: f64,
+    /// Time after it, s.
+    dry_s: f64,
 }
 
 impl WetnessAt {
@@ -79,54 +80,78 @@ impl WetnessAt {
 }
 
 impl Wetness {
-    /// Wetness at a time in s, of a rain. `None`: all is dry. Before time 0 it is that of time 0.
-    #[must_use]
-    pub fn at(&self, rain: &Rain, time_s: f64) -> Option<WetnessAt> {
+    /// Wetness at a time in s, of rates in mm/h. `None`: all is dry. Before time 0 it is that of time 0.
+    ///
+    /// Rains before the last time in which nothing fell count as one that wets a level surface alike.
+    pub(super) fn at(&self, rates: &Keyed<f64>, time_s: f64) -> Option<WetnessAt> {
         if !self.is_enabled {
             return None;
         }
+        let ln = downpour_math::ops::f64::ln;
         let found = if let Some(fixed) = self.fixed {
             let rest = (1.0 - fixed).max(DRY_FRACTION);
-            WetnessAt { before: -downpour_math::ops::f64::ln(rest), kept: 1.0, since: 0.0 }
+            WetnessAt { before: -ln(rest), kept: 1.0, since: 0.0 }
         } else {
             let wetting = Wetting::new(self.storage_m, self.drying_s).unwrap_or_default();
-            let RainedAt { before_m, dried_s, since_m } = self.rained_at(rain, time_s);
-            WetnessAt {
-                before: wetting.dose(before_m),
-                kept: wetting.kept(dried_s),
-                since: wetting.dose(since_m),
+            let (spells, last) = self.spells(rates, time_s);
+            let (mut before, mut kept) = (0.0, 1.0);
+            for spell in spells {
+                let dried = WetnessAt { before, kept, since: 0.0 };
+                before = -ln((1.0 - dried.level()).max(f64::MIN_POSITIVE)) + wetting.dose(spell.rain_m);
+                kept = wetting.kept(spell.dry_s);
             }
+            WetnessAt { before, kept, since: wetting.dose(last.rain_m) }
         };
         (found.level() > 0.0).then_some(found)
     }
 
-    /// Water that has run off level ground at a time in s, m: before the time in which nothing fell, lost by drying in that time, and
-    /// after it. `None` where no law says: hollows have been filled since long.
-    #[must_use]
-    pub fn runoff(&self, rain: &Rain, time_s: f64) -> Option<[f64; 3]> {
+    /// [`Weather::runoff`](super::Weather::runoff) of rates in mm/h.
+    pub(super) fn runoff(&self, rates: &Keyed<f64>, seepage_m_s: f64, time_s: f64) -> Option<[f64; 3]> {
         if !self.is_enabled || self.fixed.is_some() {
             return None;
         }
-        let RainedAt { before_m, dried_s, since_m } = self.rained_at(rain, time_s);
-        // What the ground stores first does not run off; dry ground stores it anew.
-        let dry = 1.0 - Wetting::new(self.storage_m, self.drying_s).unwrap_or_default().kept(dried_s);
-        let left = |fallen: f64, stored: f64| (fallen - stored).max(0.0);
-        Some([
-            left(before_m, self.storage_m),
-            self.storage_m / self.drying_s * dried_s,
-            left(since_m, self.storage_m * dry),
-        ])
+        let wetting = Wetting::new(self.storage_m, self.drying_s).unwrap_or_default();
+        let (spells, last) = self.spells(rates, time_s);
+        // What the ground stores first does not run off; what has dried it stores anew.
+        let left = |spell: &Spell, empty: f64| {
+            (spell.rain_m - self.storage_m * empty - seepage_m_s * spell.rained_s).max(0.0)
+        };
+        let (mut before, mut lost, mut empty) = (0.0f64, 0.0, 1.0);
+        for spell in spells {
+            before = (before - lost).max(0.0) + left(&spell, empty);
+            lost = (self.storage_m / self.drying_s + seepage_m_s) * spell.dry_s;
+            let filled = (1.0 - empty + spell.rain_m / self.storage_m).min(1.0);
+            empty = 1.0 - filled * wetting.kept(spell.dry_s);
+        }
+        Some([before, lost, left(&last, empty)])
     }
 
-    /// What has fallen until a time in s, and for how long nothing has.
-    #[must_use]
-    pub fn rained_at(&self, rain: &Rain, time_s: f64) -> RainedAt {
-        let rate_m_s = rain.rate_mm_h * 1.0e-3 / 3600.0;
-        let before_m = self.rained_m.unwrap_or(rate_m_s * RAINED_S);
-        let time_s = time_s.max(0.0);
-        // It rains from time 0 on, or it dries on.
-        let dried_s = if rate_m_s > 0.0 { self.dried_s } else { self.dried_s + time_s };
-        RainedAt { before_m, dried_s, since_m: rate_m_s * time_s }
+    /// The rains until a time in s, each with the time without rain after it: that before time 0 first. Apart from them the rain that has
+    /// not ended.
+    fn spells(&self, rates: &Keyed<f64>, time_s: f64) -> (Vec<Spell>, Spell) {
+        let meters = |mm_h: f64, seconds: f64| mm_h * 1.0e-3 / 3600.0 * seconds;
+        let rain_m = self.rained_m.unwrap_or_else(|| meters(rates.at(0.0), RAINED_S));
+        let mut spells = vec![Spell { rain_m, rained_s: 0.0, dry_s: self.dried_s }];
+        let mut last = Spell::default();
+        let mut from = 0.0;
+        let until = time_s.max(0.0);
+        let inner = rates.keys().iter().map(|&(time, _)| time).filter(|&time| time > 0.0 && time < until);
+        for to in inner.chain([until]).filter(|&to| to > 0.0) {
+            let mean = 0.5 * (rates.at(from) + rates.at(to));
+            if mean > 0.0 {
+                last.rain_m += meters(mean, to - from);
+                last.rained_s += to - from;
+            } else {
+                if last.rained_s > 0.0 {
+                    spells.push(std::mem::take(&mut last));
+                }
+                if let Some(spell) = spells.last_mut() {
+                    spell.dry_s += to - from;
+                }
+            }
+            from = to;
+        }
+        (spells, last)
     }
 
     pub(super) fn checked(

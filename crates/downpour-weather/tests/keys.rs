@@ -11,6 +11,9 @@ fn parse(text: &str) -> Result<Weather, SceneError> {
 
 /// Every key that may have keyframes, over ten seconds.
 const KEYED: &str = "
+[rain]
+rate_mm_h = [[0, 10], [10, 30]]
+rate_height_m = 40
 [sky]
 color = [[0, [1, 0, 0]], [10, [0, 0, 1]]]
 intensity = [[0, 2], [10, 4]]
@@ -45,6 +48,8 @@ fn every_key_moves_linearly() {
     let weather = parse(KEYED).unwrap();
     assert!(!weather.keys.is_empty());
     let now = weather.at(5.0);
+    assert_eq!((now.rain.rate_mm_h, now.rain.rate_height_m), (20.0, 40.0));
+    assert_eq!((weather.rain.rate_mm_h, weather.heaviest_rain().rate_mm_h), (10.0, 30.0));
     assert_eq!(now.sky.source, SkySource::Uniform([0.5, 0.0, 0.5]));
     // 3 times one stop.
     assert_eq!(now.sky.scale, 6.0);
@@ -76,6 +81,15 @@ fn every_key_moves_linearly() {
     assert_eq!([-1.0, 0.0, 10.0, 99.0].map(|time| weather.exposure_factor(time)), [1.0, 1.0, 4.0, 4.0]);
     assert_eq!(weather.at(-9.0).sky.scale, 2.0);
     assert_eq!(weather.at(99.0).sky.scale, 16.0);
+}
+
+/// A rate that is set is that of all times.
+#[test]
+fn a_rate_that_is_set_has_no_keys() {
+    let mut weather = parse("[rain]\nrate_mm_h = [[0, 5], [10, 50]]").unwrap();
+    weather.set_rate(7.0);
+    assert_eq!((weather.rain_at(10.0).rate_mm_h, weather.heaviest_rain().rate_mm_h), (7.0, 7.0));
+    assert!(weather.keys.is_empty());
 }
 
 /// A weather without keys is itself at all times.
@@ -135,10 +149,32 @@ fn bad_keys_are_refused() {
             "puddle[0].fill",
             "0 to 1",
         ),
+        ("[rain]\nrate_mm_h = [[0, 0], [10, 600]]".into(), "rain.rate_mm_h", "500 mm/h"),
+        ("[rain]\nrate_height_m = 3".into(), "rain.rate_height_m", "with keys of rain.rate_mm_h"),
         (
-            "[rain]\nrate_mm_h = [[0, 0], [10, 50]]".into(),
-            "rain.rate_mm_h: an array: this key has no keyframes",
-            "500 mm/h",
+            "[rain]\nrate_height_m = 2e5\nrate_mm_h = [[0, 0], [10, 50]]".into(),
+            "rain.rate_height_m",
+            "-1e4 to 1e5 m",
+        ),
+        (
+            "[rain]\nrate_mm_h = [[0, 0], [10, 50]]\nvolume = \"box\"".into(),
+            "line 2, column 1: rain.rate_mm_h: keys of a rain that goes step by step",
+            "closed-form",
+        ),
+        (
+            "[rain]\nrate_mm_h = [[0, 0], [10, 50]]\n[drips]\nenabled = true".into(),
+            "drips.enabled",
+            "a rate without keys",
+        ),
+        (
+            "[rain]\nrate_mm_h = [[0, 3], [10, 5]]\ndrops = { count = 5, diameter_mm = 1 }".into(),
+            "rain.rate_mm_h",
+            "one or the other",
+        ),
+        (
+            "[wetness]\nrained_s = [[0, 1], [2, 3]]".into(),
+            "wetness.rained_s: an array: this key has no keyframes",
+            "0 to 1e6 s",
         ),
         (format!("[sky]\nintensity = [{many}]"), "5000 keys", "at most 4096"),
     ] {

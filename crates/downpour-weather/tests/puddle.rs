@@ -71,14 +71,22 @@ fn what_runs_off_is_what_the_ground_does_not_store() {
     let text =
         "[rain]\nrate_mm_h = 36\n[wetness]\nrained_mm = 5\nstorage_mm = 0.5\ndried_s = 1000\ndrying_s = 5000";
     let weather = Weather::parse("w.toml", text).unwrap();
-    let [before, lost, since] = weather.wetness.runoff(&weather.rain, 500.0).unwrap();
+    let [before, lost, since] = weather.runoff(0.0, 500.0).unwrap();
     // 5 mm less 0.5; a fifth of 0.5 mm dries; 36 mm/h for 500 s is 5 mm, of which the ground stores what has dried.
     let stored = 0.5e-3 * (1.0 - downpour_math::ops::f64::exp(-0.2));
     for (found, expected) in [(before, 4.5e-3), (lost, 0.1e-3), (since, 5.0e-3 - stored)] {
         assert!((found - expected).abs() < 1.0e-9, "{found}, {expected}");
     }
+    let keyed = "[rain]\nrate_mm_h = [[0, 36], [1000, 36], [1000.001, 0]]\n[wetness]\nrained_mm = 0\nstorage_mm = 0.5";
+    let weather = Weather::parse("w.toml", keyed).unwrap();
+    // 10 mm in 1000 s less 0.5 mm, less 1 mm/h that seeps away; then it dries and seeps on for an hour: 1 mm and 3600 s of drying.
+    let [before, lost, since] = weather.runoff(1.0e-3 / 3600.0, 4600.0).unwrap();
+    let (dry, fell) = (0.5e-3 / weather.wetness.drying_s * 3600.0, 10.0e-3 - 0.5e-3 - 1.0e-3 / 3.6);
+    for (found, expected) in [(before, fell), (lost, 1.0e-3 + dry), (since, 0.0)] {
+        assert!((found - expected).abs() < 1.0e-7, "{found}, {expected}");
+    }
     let fixed = Weather::parse("w.toml", "[wetness]\nwetness = 0.5").unwrap();
-    assert_eq!(fixed.wetness.runoff(&fixed.rain, 0.0), None);
+    assert_eq!(fixed.runoff(0.0, 0.0), None);
 }
 
 #[test]

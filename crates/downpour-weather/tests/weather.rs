@@ -357,10 +357,10 @@ fn t1_t2_rates_are_finite_and_in_range() {
     refused("[rain]\nrate_mm_h = 99999999999999999999999999", 2, "rain.rate_mm_h");
     says(
         "[rain]\nrate_mm_h = \"10\"",
-        "line 2, column 13: rain.rate_mm_h: invalid type: string \"10\"; allowed: a number, 0, or 0.001 to 500 mm/h",
+        "line 2, column 13: rain.rate_mm_h: invalid type: string \"10\"; allowed: a number, 0, or 0.001 to 500 mm/h, or keys [[time in s, value], ...]",
     );
     refused("rain = 5", 2, "line 1, column 8: rain: invalid type: integer `5`");
-    refused("[rain]\nrate_mm_h = [1]", 2, "an array: this key has no keyframes");
+    refused("[rain]\nrate_mm_h = [1]", 2, "a key, [time in s, value]");
     refused("[rain]\nrate_mm_h = 2020-01-01", 2, "line 2");
 }
 
@@ -465,7 +465,7 @@ fn volumes_of_rain() {
 fn t11_keys_are_known_and_stand_once() {
     says(
         "[rain]\n  rate = 5",
-        "line 2, column 3: rain.rate: unknown key \"rate\", perhaps rate_mm_h; allowed: rate_mm_h, distribution, \
+        "line 2, column 3: rain.rate: unknown key \"rate\", perhaps rate_mm_h; allowed: rate_mm_h, rate_height_m, distribution, \
          gamma_shape, median_diameter_mm, seed, temperature_c, pressure_hpa, fall_speed, drop_shape, \
          mask_model, refraction, drops, volume, box_m, cylinder, max_drops, drag, bounce, drop_light, extinction",
     );

@@ -10,7 +10,7 @@ use exit_code::ExitCode as _;
 
 fn level(text: &str, time_s: f64) -> f64 {
     let weather = Weather::parse("w.toml", text).unwrap();
-    weather.wetness.at(&weather.rain, time_s).map_or(0.0, |at| at.level())
+    weather.wetness_at(time_s).map_or(0.0, |at| at.level())
 }
 
 #[track_caller]
@@ -49,6 +49,23 @@ fn rain_wets_a_dry_street_and_it_dries() {
     // Rain on what is half dry.
     let again = "[rain]\nrate_mm_h = 36\n[wetness]\nrained_mm = 100\ndried_s = 693.147\ndrying_s = 1000\nstorage_mm = 1";
     assert!((level(again, 100.0) - (1.0 - 0.5 * ops::exp(-1.0))).abs() < 1.0e-5);
+}
+
+/// 36 mm/h for 100 s are 1 mm, a storage; then 693 s halve it, and so on: a level surface has the wetness of the steps by hand.
+#[test]
+fn rain_that_comes_and_goes_wets_and_dries() {
+    let text = "[rain]\nrate_mm_h = [[0, 36], [100, 36], [100.001, 0], [793.147, 0], [793.148, 36], [893.148, 36], [893.149, 0]]
+        [wetness]\nrained_mm = 0\ndrying_s = 1000\nstorage_mm = 1";
+    let e = ops::exp(-1.0);
+    let half = 0.5 * (1.0 - e);
+    let again = 1.0 - (1.0 - half) * e;
+    let times = [(0.0, 0.0), (100.0, 1.0 - e), (793.147, half), (893.148, again), (1586.3, 0.5 * again)];
+    for (time_s, expected) in times {
+        assert!((level(text, time_s) - expected).abs() < 1.0e-4, "{time_s} s: {}", level(text, time_s));
+    }
+    // A rate that rises steadily from 0 brings half as much.
+    let rising = "[rain]\nrate_mm_h = [[0, 0], [100, 36]]\n[wetness]\nstorage_mm = 1";
+    assert!((level(rising, 100.0) - (1.0 - ops::exp(-0.5))).abs() < 1.0e-9);
 }
 
 #[test]

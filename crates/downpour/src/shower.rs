@@ -55,6 +55,7 @@ pub struct ShowerView {
 /// The rain of a weather.
 #[derive(Clone, Debug)]
 pub struct Shower {
+    /// Sizes of the drops at the largest rate.
     law: DropSizeDistribution,
     weather: Weather,
     bounce: Bounce,
@@ -69,18 +70,19 @@ impl Shower {
     ///
     /// # Errors
     /// [`ShowerError::NotUniform`] if closed form is asked for in a wind that differs from place to place,
-    /// [`ShowerError::DragByStep`] for a drag that has none;
+    /// [`ShowerError::DragByStep`] for a drag that has none; [`ShowerError::RateByStep`] for a rate that changes, step by step;
     /// [`ShowerError::Sim`], [`ShowerError::Drop`] for a rain that is none.
     pub fn new(weather: &Weather) -> Result<Self, ShowerError> {
-        let rain = &weather.rain;
+        let rain = &weather.heaviest_rain();
         let law = rain.sizes()?;
         // The papers' drag has no closed form.
         let relaxes = rain.drag == RainDrag::Relaxation;
         let form = match (rain.volume, weather.wind.uniform()) {
-            (RainVolume::Auto, Some(wind)) if relaxes => closed(&law, rain, wind)?,
+            (RainVolume::Auto, Some(wind)) if relaxes => closed(&law, weather, wind)?,
             (RainVolume::ClosedForm, Some(_)) if !relaxes => return Err(ShowerError::DragByStep),
-            (RainVolume::ClosedForm, Some(wind)) => closed(&law, rain, wind)?,
+            (RainVolume::ClosedForm, Some(wind)) => closed(&law, weather, wind)?,
             (RainVolume::ClosedForm, None) => return Err(ShowerError::NotUniform),
+            _ if weather.keys.rate().is_some() => return Err(ShowerError::RateByStep),
             _ => Form::Stepped(Box::new(Stepped::new(law.clone(), weather))),
         };
         let (dripping, splashes) = (Dripping::new(weather)?, splashes(weather)?);
@@ -115,7 +117,7 @@ impl Shower {
     /// True if drops splash: those in closed form, where there is rain.
     #[must_use]
     pub fn has_splashes(&self) -> bool {
-        self.is_closed_form() && self.splashes.is_some() && self.weather.rain.rate_mm_h > 0.0
+        self.is_closed_form() && self.splashes.is_some() && self.law.rate_mm_h() > 0.0
     }
 
     /// True if something may drip.
@@ -243,7 +245,14 @@ impl Shower {
             origin: stage.origin,
             pane: pane_plane(&self.weather, &stage.viewpoint)?,
         };
-        Ok(RainMedium::new(&self.law, resolved, masks, &options)?)
+        let Some(rates) = self.weather.keys.rate() else {
+            return Ok(RainMedium::new(&self.law, resolved, masks, &options)?);
+        };
+        // The drops about the eye pass the height of the rate at another time.
+        let above = stage.view()?.eye.y - self.weather.rain.rate_height_m;
+        let passing_s = time_s + above / fall_speed(&self.law).max(0.1);
+        let rain = Rain { rate_mm_h: rates.at(passing_s), ..self.weather.rain };
+        Ok(RainMedium::new(&rain.sizes()?, resolved, masks, &options)?)
     }
 
     /// The rate, mm/h, of the drops about the eye (in closed form) or in the simulated volume, with those that something
@@ -281,8 +290,13 @@ pub(crate) fn fall_speed(sizes: &DropSizeDistribution) -> f64 {
 }
 
 /// Rain in closed form.
-fn closed(law: &DropSizeDistribution, rain: &Rain, wind: UniformWind) -> Result<Form, ShowerError> {
-    Ok(Form::Closed(Arc::new(RainField::new(law, rain.seed)?.with_wind(wind))))
+fn closed(law: &DropSizeDistribution, weather: &Weather, wind: UniformWind) -> Result<Form, ShowerError> {
+    let rain = &weather.rain;
+    let field = match weather.keys.rate() {
+        Some(rates) => RainField::changing(law, rates, rain.rate_height_m, rain.seed)?,
+        None => RainField::new(law, rain.seed)?,
+    };
+    Ok(Form::Closed(Arc::new(field.with_wind(wind))))
 }
 
 /// Splashes of a weather, if it has any.

@@ -31,6 +31,10 @@ shared_constants! {
         FIELD_CHAIN: u32 = 8201;
         /// Dimension of those of a drop.
         FIELD_PLACE: u32 = 8202;
+        /// Dimension of that of a drop of a rain whose rate changes.
+        FIELD_THIN: u32 = 8203;
+        /// Intervals of diameter of a class in the table of a rain whose rate changes.
+        FIELD_KEPT_INTERVALS: u32 = 8;
         /// Mean of a whole portion of a Poisson number.
         FIELD_PORTION_MEAN: u32 = 16;
         /// Thresholds of a portion: beyond, no probability of 64 bits is left.

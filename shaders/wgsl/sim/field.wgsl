@@ -3,8 +3,8 @@
 // other at the period of the class (downpour_sim::field). Each column that the picture may show is one invocation.
 // What decides which drops there are is done in integers, the same on every device: the number of chains (a Poisson number, by
 // cumulative probabilities of 64 bits), the diameter (in units of 2^-30 m) and the rate of fall (in units of 2^-29 periods per
-// second) of a chain, and how far it has fallen (whole periods, and a fraction of 32 bits), at any time. Only then, relative to the
-// eye, positions are f32.
+// second) of a chain, and how far it has fallen (whole periods, and a fraction of 32 bits), at any time; and, of a rain whose rate
+// changes, which drops of the heaviest rain fall. Only then, relative to the eye, positions are f32.
 // Twin: downpour_sim::field.
 
 struct FieldClass {
@@ -33,6 +33,13 @@ struct FieldClass {
     // Radius of the part of a column within these heights with all margins, and its middle height, m.
     reach: f32,
     middle: f32,
+    // Height at which a rate that changes holds, in periods: whole ones, and a fraction in units of 2^-32.
+    gauge: vec2u,
+    // Its first node in a row of the parts that fall, its least diameter in units, and intervals per unit, in units of 2^-32.
+    first_kept: u32,
+    least_units: u32,
+    kept_inverse: u32,
+    unused: u32,
 }
 
 struct FieldFrame {
@@ -62,9 +69,10 @@ struct FieldFrame {
     pane: vec4f,
     // Places of the list before the first that is searched for.
     first: u32,
-    unused_1: u32,
-    unused_2: u32,
-    unused_3: u32,
+    // Of a rate that changes, the times at which rows of the parts that fall begin, and the length of a row; 0: all drops fall.
+    begins: u32,
+    kept_row: u32,
+    unused: u32,
 }
 
 @group(0) @binding(0) var<uniform> field_frame: FieldFrame;
@@ -78,6 +86,9 @@ struct FieldFrame {
 @group(0) @binding(5) var<storage, read_write> field_drops: array<EyeDrop>;
 // Drops that were found, which may be more than there is room for; and drops that were looked at.
 @group(0) @binding(6) var<storage, read_write> field_found: array<atomic<u32>, 2>;
+// Of a rate that changes: times (FieldTime), and row by row parts of the drops that fall, in units of 2^-32, by their diameters.
+@group(0) @binding(7) var<storage, read> field_begins: array<vec4u>;
+@group(0) @binding(8) var<storage, read> field_parts: array<u32>;
 
 // Drift and velocity of a drop of some speed.
 struct FieldCarried {
@@ -166,6 +177,51 @@ fn field_less(a: vec2u, b: vec2u) -> vec2u {
     return vec2u(a.x - b.x - select(0u, 1u, a.y < b.y), a.y - b.y);
 }
 
+// True if a number of two words, the high one first and with a sign, is below another.
+fn field_is_below(a: vec2u, b: vec2u) -> bool {
+    return i32(a.x) < i32(b.x) || (a.x == b.x && a.y < b.y);
+}
+
+// Number of times by which a chain of a rate of fall has fallen no farther than a drop is above the height of the rate: the row of the
+// time at which the drop passes that height.
+fn field_row(rate: u32, above: vec2u) -> u32 {
+    var low = 0u;
+    var high = field_frame.begins;
+    while low < high {
+        let middle = (low + high) / 2u;
+        let begin = field_begins[middle];
+        if field_is_below(above, field_fallen(rate, begin.x, begin.y, begin.z)) {
+            high = middle;
+        } else {
+            low = middle + 1u;
+        }
+    }
+    return low;
+}
+
+// Interval of a class in the table of the parts that fall, and fraction of the interval in units of 2^-16, for a number of units of
+// diameter above its least.
+fn field_interval(units: u32, inverse: u32) -> vec2u {
+    let product = field_product(units, inverse);
+    if product.y >= FIELD_KEPT_INTERVALS {
+        return vec2u(FIELD_KEPT_INTERVALS - 1u, 0xffffu);
+    }
+    return vec2u(product.y, product.x >> 16u);
+}
+
+// True if a drop falls: drop `number` of a chain of a phase, a diameter and a rate of fall.
+fn field_falls(kind: FieldClass, key: vec2u, index: u32, number: u32, phase: u32, size: vec2u) -> bool {
+    if field_frame.kept_row == 0u {
+        return true;
+    }
+    let row = field_row(size.y, field_less(vec2u(number, phase), kind.gauge));
+    let place = field_interval(max(size.x, kind.least_units) - kind.least_units, kind.kept_inverse);
+    let first = row * field_frame.kept_row + kind.first_kept + place.x;
+    let limit = field_between(field_parts[first], field_parts[first + 1u], place.y);
+    let word = rng_draw(key, index, number, FIELD_THIN).x;
+    return word < limit || limit == 0xffffffffu;
+}
+
 // Drift and velocity of drops of a terminal speed: linear between the entries.
 fn field_carried(speed: f32) -> FieldCarried {
     let position = drift_position(speed);
@@ -225,6 +281,9 @@ fn field_chain(kind: FieldClass, column: vec2i, key: vec2u, index: u32) {
     let heights = (kind.heights - carried.drift.y) / kind.period - part;
     for (var k = i32(ceil(heights.x)); k <= i32(floor(heights.y)); k += 1) {
         let number = u32(k) - above.x;
+        if !field_falls(kind, key, index, number, words.y, size) {
+            continue;
+        }
         let place = rng_draw(key, index, number, FIELD_PLACE);
         let in_column = (vec2f(place.xy >> vec2u(8u)) + 0.5) * (FIELD_FRACTION_STEP * 256.0);
         let aside = (vec2f(column - kind.eye_column) + (in_column - kind.eye_in_column)) * kind.edge;

@@ -12,6 +12,7 @@ use downpour_shaders::sim::field::{
     DRIFT, EYE_DROP, FIELD, FIELD_CLEAR_KERNEL, FIELD_FIND_KERNEL, SHELTER_AMONG_HOLES_KERNEL, SHELTER_KERNEL,
 };
 use downpour_sim::field::chain::{FieldTime, field_between, field_fallen, field_fraction, field_part};
+use downpour_sim::field::thinning::{field_interval, field_is_below};
 use downpour_sim::field::{EyeDrop, FallingDrop, RainField, drift_position, eye_drop_turned};
 use downpour_sim::gpu::{FieldPipeline, FieldSearch, GpuSimError, HolesOnGpu, ObstaclesOnGpu};
 use downpour_sim::shelter::{Holes, Obstacles};
@@ -39,6 +40,11 @@ fn number(random: [u32; 4]) -> Vec<u32> {
 /// A time up to a million seconds.
 fn time(random: [u32; 4]) -> Vec<u32> {
     vec![random[0] % 1_000_001, random[1], random[2] % 2]
+}
+
+/// A number of two words near 0.
+fn near(random: [u32; 4]) -> Vec<u32> {
+    vec![(random[0] % 5).wrapping_sub(2), random[1] % 3]
 }
 
 /// The cases.
@@ -93,6 +99,12 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             let first = long();
             let difference = first.wrapping_sub(long());
             [(difference >> 32) as u32, difference as u32].words()
+        }),
+        FunctionCase::new("field_is_below", &FIELD, &[Made(near), Made(near)], exact, |a| {
+            u32::from(field_is_below(a.u32s(), a.u32s())).words()
+        }),
+        FunctionCase::new("field_interval", &FIELD, &[Made(number), Made(number)], exact, |a| {
+            field_interval(a.u32(), a.u32()).words()
         }),
     ]
 }
@@ -155,10 +167,12 @@ struct Kind {
     far: bool,
     has_holes: bool,
     pane: Option<[f32; 4]>,
+    /// The rate changes.
+    changes: bool,
 }
 
 fn kind(wind: fn() -> UniformWind, time_s: f64, shutter_s: f64) -> Kind {
-    Kind { wind, time_s, shutter_s, far: false, has_holes: false, pane: None }
+    Kind { wind, time_s, shutter_s, far: false, has_holes: false, pane: None, changes: false }
 }
 
 /// Drops of a picture, as the CPU and the device find them.
@@ -177,7 +191,13 @@ fn key(drop: &EyeDrop) -> (u32, u32) {
 
 fn found(gpu: &Gpu, kind: Kind) -> Result<Found, GpuError> {
     let sizes = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 60.0).expect("a rain");
-    let field = RainField::new(&sizes, 12).expect("a field").with_wind((kind.wind)());
+    let field = if kind.changes {
+        let rates = Keyed::new(vec![(-4.0, 60.0), (7.0, 60.0), (8.0, 0.0), (9.0, 25.0), (1.0e6, 60.0)]);
+        RainField::changing(&sizes, &rates.expect("in range"), 2.0, 12)
+    } else {
+        RainField::new(&sizes, 12)
+    };
+    let field = field.expect("a field").with_wind((kind.wind)());
     let origin = if kind.far { DVec3::new(51_234.5, 20.0, -987_654.25) } else { DVec3::ZERO };
     let view = View {
         eye: origin + DVec3::new(0.3, 1.5, 3.0),
@@ -343,6 +363,9 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         of("main_field_find: gusts", |gpu| case(gpu, kind(gusty, 11.3, 1.0 / 60.0))),
         of("main_field_find: frozen, far away and late", |gpu| {
             case(gpu, Kind { far: true, ..kind(still, 987_654.321, 0.0) })
+        }),
+        of("main_field_find: a rate that falls to none and rises", |gpu| {
+            case(gpu, Kind { changes: true, ..kind(steady, 7.6, 1.0 / 60.0) })
         }),
         of("main_field_find: before time 0", |gpu| case(gpu, Kind { far: true, ..kind(steady, -3.4, 0.02) })),
         shelter("main_shelter: steady wind", |gpu| {

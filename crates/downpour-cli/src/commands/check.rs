@@ -195,7 +195,7 @@ fn water(input: &Input, stage: &Stage) -> Result<Vec<Entry>, Failure> {
     };
     let deepest = ground.iter().flat_map(WetGround::maps).map(PuddleMap::deepest_m).fold(0.0, f32::max);
     let weather = &input.weather;
-    let wetness = weather.wetness.at(&weather.rain, 0.0).map_or(0.0, |at| at.level());
+    let wetness = weather.wetness_at(0.0).map_or(0.0, |at| at.level());
     Ok(vec![
         Entry::new("wetness", "wetness of level ground in the rain", Datum::Computed(wetness, 3), ""),
         count("puddles", "rectangles with puddles", input.weather.puddles.len()),

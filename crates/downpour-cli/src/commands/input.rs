@@ -66,7 +66,9 @@ impl InputArguments {
     pub(crate) fn read(&self, budget: &mut Budget) -> Result<Input, Failure> {
         let mut input = Source::read(&self.input, &self.roots(), budget)?;
         let weather = &mut input.weather;
-        weather.rain.rate_mm_h = self.rate.unwrap_or(weather.rain.rate_mm_h);
+        if let Some(rate) = self.rate {
+            weather.set_rate(rate);
+        }
         if let Some(shutter) = self.shutter {
             weather.camera.shutter = shutter;
             weather.camera.observer = Observer::Camera;

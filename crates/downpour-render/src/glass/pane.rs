@@ -10,6 +10,7 @@ use downpour_shaders::render::glass::{
     GLASS_PICTURE_EXACT, GLASS_PICTURE_GLASS, GLASS_PICTURE_SCENE, GLASS_PICTURE_TATARCHUK,
 };
 use downpour_weather::{Pane, PaneFocus, PaneFresnel, PaneShadow, Rain, Weather};
+use downpour_wind::Keyed;
 use glam::DVec3;
 
 use super::drops::{Binned, binned};
@@ -42,6 +43,8 @@ const SODIUM_M: f64 = 589.3e-9;
 pub struct WetPane {
     pane: Pane,
     rain: Rain,
+    /// Rain rate over time, mm/h.
+    rates: Keyed<f64>,
     size: [f64; 2],
     begin_s: f64,
     water: f64,
@@ -86,13 +89,14 @@ impl WetPane {
         let position = PanePosition::new(pane, viewpoint)?;
         let size = pane.size.unwrap_or_else(|| position.shown(viewpoint, weather.size));
         let begin_s = first_s - pane.before;
-        let mut lattice = lattice(&pane.options(size, &weather.rain, begin_s))?;
-        let (rain, air) = pane.weather(&weather.rain, pane.speed.at(begin_s));
+        let mut lattice = lattice(&pane.options(size, &weather.heaviest_rain(), begin_s))?;
+        let (rain, air) = pane.weather(&weather.rain_at(begin_s), pane.speed.at(begin_s));
         lattice.set_weather(&rain, &air)?;
         let water = water_index_in_air(SODIUM_M, &weather.rain.air).unwrap_or(WATER_INDEX);
         let above = pane.rows_above(size);
+        let rates = weather.rates_mm_h().into_owned();
         let (pane, rain, state) = (pane.clone(), weather.rain, OnceLock::new());
-        Ok(Some(Self { pane, rain, size, begin_s, water, above, lattice, state }))
+        Ok(Some(Self { pane, rain, rates, size, begin_s, water, above, lattice, state }))
     }
 
     /// Steps rain and wipers to a time in seconds. The drops do not depend on how the time is divided.
@@ -103,13 +107,14 @@ impl WetPane {
         let tick = self.lattice.tick_s();
         let until = ((time_s - self.begin_s) / tick + 1.0e-6).floor().max(0.0) as u64;
         let every = (WEATHER_S / tick).ceil().max(1.0) as u64;
-        let moves = self.pane.speed.keys().len() > 1;
+        let moves = self.pane.speed.keys().len().max(self.rates.keys().len()) > 1;
         while self.lattice.ticks() < until {
             self.state = OnceLock::new();
             let done = self.lattice.ticks();
             if moves && done.is_multiple_of(every) {
-                let speed = self.pane.speed.at(self.begin_s + done as f64 * tick);
-                let (rain, air) = self.pane.weather(&self.rain, speed);
+                let now = self.begin_s + done as f64 * tick;
+                let rain = Rain { rate_mm_h: self.rates.at(now), ..self.rain };
+                let (rain, air) = self.pane.weather(&rain, self.pane.speed.at(now));
                 self.lattice.set_weather(&rain, &air)?;
             }
             let count = (every - done % every).min(until - done);

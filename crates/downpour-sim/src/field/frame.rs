@@ -48,6 +48,16 @@ pub struct FieldClass {
     pub reach: f32,
     /// Its middle height, m.
     pub middle: f32,
+    /// Height at which a rate that changes holds, in periods: whole ones, and a fraction in units of 2^-32.
+    pub gauge: [u32; 2],
+    /// First node of the class in a row of the parts that fall.
+    pub first_kept: u32,
+    /// Its least diameter, in units.
+    pub least_units: u32,
+    /// Intervals of these parts per unit of diameter, in units of 2^-32.
+    pub kept_inverse: u32,
+    /// 0.
+    pub unused: u32,
 }
 
 /// Uniforms of the search for the drops of a picture.
@@ -86,12 +96,12 @@ pub struct FieldFrame {
     pub pane: [f32; 4],
     /// Places of the list before the first that is searched for.
     pub first: u32,
+    /// Of a rate that changes, the number of times at which rows of the parts that fall begin.
+    pub begins: u32,
+    /// The length of a row; 0: all drops fall.
+    pub kept_row: u32,
     /// 0.
-    pub unused_1: u32,
-    /// 0.
-    pub unused_2: u32,
-    /// 0.
-    pub unused_3: u32,
+    pub unused: u32,
 }
 
 /// Uniforms of the search for what obstacles stop.
@@ -157,6 +167,11 @@ impl RainField {
             row.first_node = k * self.nodes_of_class();
             row.first_threshold = k * 2 * FIELD_THRESHOLDS;
             row.first_column = columns;
+            if let Some(thinning) = &self.thinning {
+                let kind = thinning.classes[class.number];
+                row.first_kept = (class.number * (thinning.row_len() / thinning.classes.len())) as u32;
+                (row.gauge, row.least_units, row.kept_inverse) = (kind.height, kind.low, kind.inverse);
+            }
             columns = columns.saturating_add(row.counts[0].saturating_mul(row.counts[1]));
             slowest = slowest.min(class.speeds[0]);
             deepest = deepest.min(view.eye.y + f64::from(row.heights[0]));
@@ -179,6 +194,8 @@ impl RainField {
             classes: classes.len() as u32,
             columns,
             room: (room as u32).min(max_room).max(1),
+            begins: self.thinning.as_ref().map_or(0, |thinning| thinning.begins.len() as u32),
+            kept_row: self.thinning.as_ref().map_or(0, |thinning| thinning.row_len() as u32),
             ..FieldFrame::zeroed()
         };
         let now = drift;

@@ -78,6 +78,9 @@ pub struct FieldPipeline {
 pub struct FieldOnGpu {
     nodes: wgpu::Buffer,
     thresholds: wgpu::Buffer,
+    /// Times and parts of a rate that changes; one of each without.
+    begins: wgpu::Buffer,
+    parts: wgpu::Buffer,
     /// Drift of drops up to whole quarters of a second, by their numbers.
     cuts: BTreeMap<i64, Drift>,
 }
@@ -122,7 +125,16 @@ impl FieldPipeline {
             field.classes.iter().flat_map(|class| class.sizes.nodes.iter().copied()).collect();
         let rows = field.classes.iter().flat_map(|class| class.count.thresholds.iter().flatten());
         let thresholds: Vec<[u32; 2]> = rows.map(|&word| [(word >> 32) as u32, word as u32]).collect();
+        let (mut begins, mut parts) = (vec![[0; 4]], vec![0]);
+        if let Some(thinning) = &field.thinning {
+            // A buffer is never empty.
+            let times = thinning.begins.iter();
+            begins.splice(0..0, times.map(|time| [time.seconds, time.fraction, time.is_before, 0]));
+            parts.splice(0..0, thinning.kept.iter().copied());
+        }
         Ok(FieldOnGpu {
+            begins: BufferSource::storage(&self.gpu, "times of rates", &begins)?,
+            parts: BufferSource::storage(&self.gpu, "parts of the drops that fall", &parts)?,
             nodes: BufferSource::storage(&self.gpu, "sizes of drops", &nodes)?,
             thresholds: BufferSource::storage(&self.gpu, "numbers of chains", &thresholds)?,
             cuts: BTreeMap::new(),
@@ -156,7 +168,9 @@ impl FieldPipeline {
         if query.frame.columns > 0 {
             let classes = buffers.storage("classes of the field", &query.classes)?;
             let drift = buffers.storage("drift of drops", &query.drift)?;
-            let bound = [&uniform, &classes, &on.nodes, &on.thresholds, &drift, &drops, &found];
+            let (nodes, thresholds) = (&on.nodes, &on.thresholds);
+            let bound =
+                [&uniform, &classes, nodes, thresholds, &drift, &drops, &found, &on.begins, &on.parts];
             find = Some((self.find.bind(gpu, &bound)?, workgroups_for(query.frame.columns)));
         }
         let mut shelter = None;

@@ -3,6 +3,7 @@
 use downpour_drop::distribution::DropSizeDistribution;
 use downpour_lattice::puddle::{Puddle, PuddleBorder, PuddleOptions, PuddleRain};
 use downpour_math::pyramid::{PyramidRounding, pyramid_append, pyramid_levels};
+use downpour_wind::Keyed;
 
 use super::PuddleError;
 
@@ -21,13 +22,44 @@ const STEP_S: f64 = 5.0e-3;
 /// Ripples older than this have gone, s.
 const MEMORY_S: f64 = 2.5;
 
+/// Steps with rain of one rate, where the rate changes: a quarter of a second.
+const STEPS_OF_RATE: i64 = 50;
+
 /// Ripples of water in the rain.
 #[derive(Debug)]
 pub struct Ripples {
     lattice: Puddle,
     rain: Option<PuddleRain>,
+    changes: Option<Changes>,
     /// The step that has been made, counted from time 0.
     step: i64,
+}
+
+/// A rate that changes.
+#[derive(Debug)]
+struct Changes {
+    heaviest: DropSizeDistribution,
+    rates: Keyed<f64>,
+    seed: u64,
+    /// Number of the time, in [`STEPS_OF_RATE`], whose rain falls.
+    number: Option<i64>,
+}
+
+impl Changes {
+    /// The rain of a step, if it is another than that of the last one; within it `None` for a dry time.
+    fn rain(&mut self, step: i64) -> Result<Option<Option<PuddleRain>>, PuddleError> {
+        let number = step.div_euclid(STEPS_OF_RATE);
+        if self.number.replace(number) == Some(number) {
+            return Ok(None);
+        }
+        let middle_s = (number as f64 + 0.5) * STEPS_OF_RATE as f64 * STEP_S;
+        let rate = self.rates.at(middle_s);
+        if rate <= 0.0 {
+            return Ok(Some(None));
+        }
+        let rain = DropSizeDistribution::with_options(self.heaviest.law(), rate, self.heaviest.options())?;
+        Ok(Some(Some(PuddleRain::new(&rain, self.seed))))
+    }
 }
 
 impl Ripples {
@@ -38,7 +70,22 @@ impl Ripples {
     pub fn new(rain: Option<&DropSizeDistribution>, seed: u64, time_s: f64) -> Result<Self, PuddleError> {
         let lattice = level_water()?;
         let rain = rain.map(|rain| PuddleRain::new(rain, seed));
-        Ok(Self { lattice, rain, step: step_of(time_s - MEMORY_S) })
+        Ok(Self { lattice, rain, changes: None, step: step_of(time_s - MEMORY_S) })
+    }
+
+    /// The same of a rain whose rate in mm/h changes; `heaviest` is that of the largest rate.
+    ///
+    /// # Errors
+    /// As [`Ripples::new`].
+    pub fn changing(
+        heaviest: &DropSizeDistribution,
+        rates_mm_h: &Keyed<f64>,
+        seed: u64,
+        time_s: f64,
+    ) -> Result<Self, PuddleError> {
+        let (heaviest, rates) = (heaviest.clone(), rates_mm_h.clone());
+        let changes = Some(Changes { heaviest, rates, seed, number: None });
+        Ok(Self { changes, ..Self::new(None, seed, time_s)? })
     }
 
     /// Steps the rain to a time in seconds. The ripples do not depend on the division of the time into parts of up to 5 s; a time
@@ -47,7 +94,9 @@ impl Ripples {
     /// # Errors
     /// As [`Ripples::new`].
     pub fn advance(&mut self, time_s: f64) -> Result<(), PuddleError> {
-        let Some(rain) = &self.rain else { return Ok(()) };
+        if self.rain.is_none() && self.changes.is_none() {
+            return Ok(());
+        }
         let until = step_of(time_s);
         let anew = step_of(time_s - 2.0 * MEMORY_S);
         if self.step < anew {
@@ -56,8 +105,12 @@ impl Ripples {
         }
         let extent = self.lattice.extent_m();
         while self.step < until {
-            let impacts = rain.impacts(extent, self.step as u64, STEP_S as f32)?;
-            self.lattice.seed(&impacts)?;
+            if let Some(rain) = self.changes.as_mut().map(|changes| changes.rain(self.step)).transpose()? {
+                self.rain = rain.unwrap_or(self.rain.take());
+            }
+            if let Some(rain) = &self.rain {
+                self.lattice.seed(&rain.impacts(extent, self.step as u64, STEP_S as f32)?)?;
+            }
             self.lattice.step(STEP_S as f32)?;
             self.step += 1;
         }

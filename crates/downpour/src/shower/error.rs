@@ -24,6 +24,12 @@ pub enum ShowerError {
          rain.drag = \"relaxation\", or rain.volume = \"auto\", \"view\" or \"box\""
     )]
     DragByStep,
+    /// A rate that changes, of rain that goes step by step.
+    #[error(
+        "rain.rate_mm_h has keys, and the rain goes step by step: in wind that differs from place to place, or with \
+         rain.drag = \"rousseau-2008\"; allowed: a number, or uniform wind and gusts alone with rain.drag = \"relaxation\""
+    )]
+    RateByStep,
     /// The drops' motion.
     #[error(transparent)]
     Sim(#[from] SimError),
