@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use downpour::scene::Budget;
+use downpour::shower::Shower;
 use downpour::{Backend, Frame, Renderer, RendererOptions, Source};
 
 /// A sky that darkens, a lamp that lights up and moves, a zoom.
@@ -77,4 +78,63 @@ fn a_frame_alone_is_the_frame_of_a_clip_and_that_of_its_values() {
     assert_ne!(bits(&frames[0]), bits(&alone));
     // Earlier frames after later ones.
     assert_eq!(bits(&clip.frame(1.0).unwrap()), bits(&frames[1]));
+}
+
+/// A shower over a puddle and behind a pane.
+fn shower(rate: &str) -> String {
+    format!(
+        "
+[rain]
+rate_mm_h = {rate}
+[sky]
+zenith_color = [0.4, 0.45, 0.5]
+[camera]
+position_m = [0, 1.6, 0]
+fov_deg = 40
+[glass]
+tilt_deg = 60
+before_s = 0.5
+cell_mm = 5
+[output]
+size = [48, 32]
+"
+    )
+}
+
+#[test]
+fn a_rate_that_changes_is_that_of_the_time_in_any_order() {
+    let text = shower("[[0, 0], [2, 80], [12, 80], [12.5, 0]]");
+    let mut clip = renderer(&text, 0.0);
+    let times = [0.0, 7.0, 28.0];
+    let frames: Vec<Frame> = times.map(|time| clip.frame(time).unwrap()).into();
+    // As a disdrometer as high as the columns of a class, up to 30 m above and below the eye: there the rate is that of some seconds
+    // before and after.
+    let shower = Shower::new(clip.weather()).unwrap();
+    let rates = times.map(|time| shower.measured_rate_mm_h(clip.first_stage(), time).unwrap());
+    assert!(rates[0] < 20.0 && (rates[1] / 80.0 - 1.0).abs() < 0.1 && rates[2] == 0.0, "{rates:?}");
+    let exposure = clip.exposure();
+    for (time, frame) in times.into_iter().zip(&frames) {
+        let mut alone = renderer(&text, 0.0);
+        alone.set_exposure(exposure);
+        assert_eq!(bits(&alone.frame(time).unwrap()), bits(frame), "{time} s");
+    }
+    assert!(frames[1].medium.extinction() > 0.0);
+    assert_eq!(frames[2].medium.extinction(), 0.0);
+}
+
+#[test]
+fn a_rate_whose_keys_are_equal_is_the_rain_of_that_rate() {
+    let [mut keyed, mut plain] = ["[[0, 30], [5, 30]]", "30"].map(|rate| renderer(&shower(rate), 0.0));
+    for time in [0.0, 0.5] {
+        assert_eq!(bits(&keyed.frame(time).unwrap()), bits(&plain.frame(time).unwrap()), "{time} s");
+    }
+}
+
+#[test]
+fn a_rate_that_changes_needs_closed_form() {
+    let text = "[rain]\nrate_mm_h = [[0, 5], [1, 50]]\n[turbulence]\nspeed_m_s = 1\n[[wind]]\nvortex = { strength_m2_s = 5, center_m = [0, 0, 0] }";
+    let weather = downpour::weather::Weather::parse("w.toml", text);
+    let weather = weather.unwrap_or_else(|error| panic!("{error}"));
+    let error = Shower::new(&weather).unwrap_err().to_string();
+    assert!(error.contains("rain.rate_mm_h has keys"), "{error}");
 }

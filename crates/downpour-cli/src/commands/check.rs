@@ -242,8 +242,10 @@ fn pane(input: &Input, stage: &Stage, first_s: f64) -> Result<(Vec<Entry>, u64),
 
 fn rain(input: &Input) -> Result<Vec<Entry>, Failure> {
     use Datum::{Computed, Given, Word};
-    let rain = &input.weather.rain;
+    // Of a rate that changes, the largest.
+    let rain = &input.weather.heaviest_rain();
     let law = rain.sizes()?;
+    let rate = if input.weather.keys.rate().is_some() { "largest rain rate" } else { "rain rate" };
     let median = 1.0e3 * law.median_volume_diameter();
     let drawn_as = match drop_model(&input.weather, &input.loaded)? {
         Some(model) => {
@@ -253,7 +255,7 @@ fn rain(input: &Input) -> Result<Vec<Entry>, Failure> {
         None => input.weather.rain.drop_shape.name().to_owned(),
     };
     Ok(vec![
-        Entry::new("rate_mm_h", "rain rate", Given(rain.rate_mm_h), "mm/h"),
+        Entry::new("rate_mm_h", rate, Given(rain.rate_mm_h), "mm/h"),
         Entry::new("distribution", "distribution", Word(rain.law.name().to_owned()), ""),
         Entry::new("drop_shape", "drops are drawn as", Word(drawn_as), ""),
         Entry::new("seed", "seed", Datum::Count(rain.seed), ""),

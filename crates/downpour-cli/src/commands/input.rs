@@ -79,6 +79,13 @@ impl InputArguments {
     }
 }
 
+/// The rain rate of a weather, or the least and the largest of its keys, mm/h.
+pub(crate) fn rate_text(weather: &Weather) -> String {
+    let Some(rates) = weather.keys.rate() else { return weather.rain.rate_mm_h.to_string() };
+    let least = rates.keys().iter().map(|key| key.1).fold(f64::INFINITY, f64::min);
+    format!("{least} to {}", weather.heaviest_rain().rate_mm_h)
+}
+
 /// Prints the parts of a scene that were dropped, repaired or missing.
 pub(crate) fn say_missing(weather: &Weather, loaded: &Loaded, stage: &Stage, say: impl Fn(&str)) {
     say_warnings(&weather.name, &loaded.warnings, &say);

@@ -138,13 +138,13 @@ impl RenderArguments {
         let frame = self.frame(&mut renderer, time_s, interrupt)?;
         let drawn = frame.picture.drawn.len();
         let unresolved = (100.0 * frame.medium.unresolved_fraction()).round();
-        let rain = &renderer.weather().rain;
+        let weather = renderer.weather();
+        let rate = weather.rain_at(time_s).rate_mm_h;
         self.say(&format!(
-            "rain: {} mm/h, {drawn} drops drawn; {unresolved} % of its cross-section to 50 m is unresolved",
-            rain.rate_mm_h
+            "rain: {rate} mm/h, {drawn} drops drawn; {unresolved} % of its cross-section to 50 m is unresolved"
         ));
         let bytes = Bytes {
-            stats: report::text(&report::stats(&frame, renderer.computer(), rain)).into(),
+            stats: report::text(&report::stats(&frame, renderer.computer(), weather)).into(),
             drops: if outputs.wants_drops() { report::drops(&frame).into() } else { Vec::new() },
             picture: self.encode(outputs.format, &frame)?,
         };

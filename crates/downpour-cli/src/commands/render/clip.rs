@@ -23,6 +23,7 @@ use super::outputs::Format;
 use super::paths::ClipPaths;
 use super::report;
 use super::{RenderArguments, has_room};
+use crate::commands::input::rate_text;
 use crate::failure::{Failure, INPUT, LIMIT, OTHER};
 use crate::interrupt::Interrupt;
 use crate::output::remove_leftovers;
@@ -62,7 +63,7 @@ pub(super) fn run(
     let weather = renderer.weather().clone();
     let refraction = format!("{:?}", renderer.refraction());
     let clip = Clip { arguments, frames, fps, paths, weather, atlas, refraction, scene, interrupt };
-    let rate = clip.weather.rain.rate_mm_h;
+    let rate = rate_text(&clip.weather);
     arguments.say(&format!("rain: {rate} mm/h, {} frames", frames.count()));
     let (journal, made) = clip.make(&mut renderer)?;
     clip.finish(journal, made)
@@ -233,7 +234,7 @@ impl Clip<'_> {
             digest: digest(&picture),
             picture,
             drops: self.paths.drops.is_some().then(|| report::drops(&frame)),
-            stats: report::stats(&frame, computer, &self.weather.rain),
+            stats: report::stats(&frame, computer, &self.weather),
         })
     }
 
@@ -302,7 +303,7 @@ impl Clip<'_> {
             ("backend", computer.backend.to_owned()),
             ("adapter", computer.adapter.clone()),
             ("driver", computer.driver.clone()),
-            ("rate", weather.rain.rate_mm_h.to_string()),
+            ("rate", rate_text(weather)),
             ("seed", weather.rain.seed.to_string()),
             ("size", format!("{width}x{height}")),
             ("time", arguments.input.time.to_string()),

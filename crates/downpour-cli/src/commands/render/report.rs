@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use downpour::weather::Rain;
+use downpour::weather::Weather;
 use downpour::{Computer, Frame};
 use serde_json::{Map, Value, json};
 
@@ -10,7 +10,8 @@ use super::frames::Frames;
 use crate::listing::number;
 
 /// Statistics of a picture of a rain.
-pub(super) fn stats(frame: &Frame, computer: &Computer, rain: &Rain) -> Value {
+pub(super) fn stats(frame: &Frame, computer: &Computer, weather: &Weather) -> Value {
+    let rain = &weather.rain_at(frame.time_s);
     let Frame { picture, drops, medium, .. } = frame;
     let mut passes = Map::new();
     for (name, ms) in &picture.passes {
@@ -60,7 +61,8 @@ pub(super) struct ClipStats {
 }
 
 /// Keys whose value in a clip is the mean of its frames; `time_s` is that of the first.
-const MEANS: [&str; 8] = [
+const MEANS: [&str; 9] = [
+    "asked_rate_mm_h",
     "drops_simulated",
     "drops_drawn",
     "drops_on_screen",
