@@ -454,7 +454,7 @@ impl Chain {
     /// True if a drop is among those of a rain whose rate changes.
     fn falls(&self, k: i64, class: &Class, thinning: &Thinning) -> bool {
         let [word, ..] = rng_draw(self.column, self.index, k as u32, FIELD_THIN);
-        thinning.keeps(class.number, self.size, [k as u32, self.phase], word)
+        thinning.field_falls(class.number, self.size, [k as u32, self.phase], word)
     }
 
     fn drop(&self, k: i64, class: &Class, column: [i64; 2]) -> FallingDrop {

@@ -122,7 +122,13 @@ impl Thinning {
 
     /// True if a drop falls: drop `place` (whole periods, and the phase) of a chain of a class, of a diameter and a rate of fall, with a
     /// random word.
-    pub(crate) fn keeps(&self, class: usize, [units, rate]: [u32; 2], place: [u32; 2], word: u32) -> bool {
+    pub(crate) fn field_falls(
+        &self,
+        class: usize,
+        [units, rate]: [u32; 2],
+        place: [u32; 2],
+        word: u32,
+    ) -> bool {
         let kind = self.classes[class];
         let row = field_row(&self.begins, rate, field_above(place, kind.height)) as usize;
         let [interval, part] = field_interval(units.saturating_sub(kind.low), kind.inverse);
@@ -270,8 +276,8 @@ mod tests {
         let fallen = |time_s: f64| field_fallen(rate, FieldTime::new(time_s));
         let units = (2.1e-3 / f64::from(FIELD_DIAMETER_STEP)) as u32;
         for word in [0, 1, u32::MAX] {
-            assert!(!thinning.keeps(1, [units, rate], fallen(-5.0), word));
-            assert!(thinning.keeps(1, [units, rate], fallen(5.0), word));
+            assert!(!thinning.field_falls(1, [units, rate], fallen(-5.0), word));
+            assert!(thinning.field_falls(1, [units, rate], fallen(5.0), word));
         }
     }
 }
