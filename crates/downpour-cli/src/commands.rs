@@ -9,6 +9,7 @@ mod mask;
 mod pattern;
 mod rain;
 mod render;
+mod schema;
 mod specimen;
 mod streaks;
 mod street;
@@ -26,6 +27,7 @@ use crate::interrupt::Interrupt;
 pub(crate) enum Command {
     Render(render::RenderArguments),
     Check(check::CheckArguments),
+    Schema(schema::SchemaArguments),
     Mask(mask::MaskArguments),
     Drop(drop::DropArguments),
     Rain(rain::RainArguments),
@@ -41,6 +43,7 @@ impl Command {
         match self {
             Self::Render(arguments) => arguments.run(interrupt),
             Self::Check(arguments) => arguments.run(),
+            Self::Schema(arguments) => arguments.run(),
             Self::Mask(arguments) => arguments.run(interrupt),
             Self::Drop(arguments) => arguments.run(),
             Self::Rain(arguments) => arguments.run(),

@@ -26,6 +26,7 @@ pub const PERSISTENCE_S: f64 = 0.075;
 
 /// Observer of moving drops.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Observer {
     /// A camera: all light while its shutter is open has the same weight.
@@ -37,6 +38,7 @@ pub enum Observer {
 
 /// Tone curve from radiance to the colors of a picture to look at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum ToneCurve {
     /// Bright colors keep their hue and go toward white by their stops, as on film.
@@ -186,6 +188,7 @@ impl Default for Camera {
 }
 
 #[derive(Debug, Default, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct CameraTable {
     position_m: Option<VectorKeys<PositionM>>,

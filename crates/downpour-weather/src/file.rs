@@ -27,8 +27,9 @@ const MAX_PATH: usize = 4096;
 
 /// All tables of the file.
 #[derive(Debug, Default, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
-struct Tables {
+pub(super) struct Tables {
     preset: Option<String>,
     rain: RainTable,
     sky: SkyTable,
@@ -54,6 +55,7 @@ struct Tables {
 }
 
 #[derive(Debug, Default, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 struct OutputTable {
     size: Option<Exactly<Whole<1, 16_384>, 2>>,

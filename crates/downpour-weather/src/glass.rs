@@ -28,6 +28,7 @@ const MAX_RAD: f64 = 7.0;
 
 /// Object in focus.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum PaneFocus {
     /// The scene behind the pane, each point at its distance: the drops are blurred.
@@ -39,6 +40,7 @@ pub enum PaneFocus {
 
 /// Reflectance of the surfaces of pane and water.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum PaneFresnel {
     /// Fresnel's equations.
@@ -51,6 +53,7 @@ pub enum PaneFresnel {
 
 /// Effect of the drops on light that falls through the pane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum PaneShadow {
     /// Drops are lenses, whose light converges behind them and spreads beyond.
@@ -181,6 +184,7 @@ fn shifted(wiper: &GlassWiper, begin_s: f64, lower: f64) -> GlassWiper {
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct GlassTable {
     distance_m: Option<In<ReachM>>,
@@ -206,6 +210,7 @@ pub(super) struct GlassTable {
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 struct WiperTable {
     pivot_m: Exactly<In<PivotM>, 2>,
@@ -220,6 +225,7 @@ struct WiperTable {
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 struct WornTable {
     from_m: In<BladeM>,

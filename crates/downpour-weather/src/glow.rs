@@ -8,6 +8,7 @@ pub const GLARE: f64 = 0.01;
 
 /// Filter that spreads glare.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum GlowFilter {
     /// A pyramid, whose levels have the law of the CIE.
@@ -44,6 +45,7 @@ impl Glow {
 }
 
 #[derive(Debug, Default, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct GlowTable {
     glare: Option<In<Fraction>>,

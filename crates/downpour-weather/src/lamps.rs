@@ -64,6 +64,7 @@ pub enum Lamp {
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub(super) enum LampTable {
     Point(PointTable),
@@ -74,6 +75,7 @@ pub(super) enum LampTable {
 type Color = Option<VectorKeys<Tint>>;
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct PointTable {
     position_m: VectorKeys<PositionM>,
@@ -84,6 +86,7 @@ pub(super) struct PointTable {
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct SpotTable {
     position_m: VectorKeys<PositionM>,
@@ -97,6 +100,7 @@ pub(super) struct SpotTable {
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct DirectionalTable {
     direction: VectorKeys<Part>,

@@ -37,6 +37,8 @@ mod presets;
 mod puddle;
 mod quantity;
 mod rain;
+#[cfg(feature = "schema")]
+mod schema;
 mod sky;
 mod splashes;
 mod streaks;
@@ -71,6 +73,8 @@ pub use rain::{
     RAIN_BOX_M, Rain, RainBounce, RainCylinder, RainDrag, RainDropLight, RainDropShape, RainExtinction,
     RainRefraction, RainVolume,
 };
+#[cfg(feature = "schema")]
+pub use schema::json_schema;
 pub use sky::{Sky, SkySource, SunSource};
 pub use splashes::Splashes;
 pub use streaks::{StreakLook, Streaks};

@@ -67,6 +67,7 @@ impl Model {
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct ModelTable {
     file: String,
@@ -78,6 +79,7 @@ pub(super) struct ModelTable {
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 struct RepeatTable {
     count: Exactly<Whole<1, 65_536>, 3>,

@@ -85,6 +85,7 @@ pub struct Puddle {
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct PuddleTable {
     position_m: Exactly<In<PositionM>, 3>,
@@ -188,7 +189,7 @@ fn fill(
 
 /// A fraction, or keys of it, or `None` for the rain.
 #[derive(Debug)]
-struct FillKey(Option<NumberKeys<Fill>>);
+pub(super) struct FillKey(Option<NumberKeys<Fill>>);
 
 impl<'de> Deserialize<'de> for FillKey {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {

@@ -39,6 +39,7 @@ const MAX_DROPS: u32 = 2_000_000;
 
 /// Volume in which drops are simulated, and method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum RainVolume {
@@ -64,6 +65,7 @@ pub enum RainVolume {
 
 /// Names of the laws of terminal speed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 enum FallSpeed {
     #[serde(rename = "beard-1976")]
     Beard1976,
@@ -100,6 +102,7 @@ impl From<FallSpeed> for FallSpeedModel {
 
 /// Shapes of the drops in masks and streaks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum RainDropShape {
@@ -133,6 +136,7 @@ impl RainDropShape {
 
 /// Lookup of the color of a drop's pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum RainRefraction {
@@ -146,6 +150,7 @@ pub enum RainRefraction {
 
 /// Model of the drops' motion in the wind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum RainDrag {
@@ -159,6 +164,7 @@ pub enum RainDrag {
 
 /// Light of lamps and sun on drops.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum RainDropLight {
@@ -183,6 +189,7 @@ pub enum RainDropLight {
 
 /// Extinction by a drop of the light behind it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum RainExtinction {
@@ -297,6 +304,7 @@ impl Default for Rain {
 }
 
 #[derive(Debug, Default, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct RainTable {
     rate_mm_h: Option<NumberKeys<RateMmH>>,
@@ -324,6 +332,7 @@ pub(super) struct RainTable {
 
 /// A number of drops of one size.
 #[derive(Clone, Copy, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 struct DropsTable {
     count: Whole<1, { 1 << 30 }>,
@@ -331,6 +340,7 @@ struct DropsTable {
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 struct CylinderTable {
     base_m: Option<Exactly<In<PositionM>, 3>>,
@@ -339,6 +349,7 @@ struct CylinderTable {
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 struct BounceTable {
     fraction: Option<In<Fraction>>,
@@ -373,6 +384,7 @@ impl CylinderTable {
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 enum Distribution {
     MarshallPalmer,

@@ -72,6 +72,7 @@ impl Default for Sky {
 }
 
 #[derive(Debug, Default, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct SkyTable {
     file: Option<String>,
@@ -83,6 +84,7 @@ pub(super) struct SkyTable {
 }
 
 #[derive(Debug, Default, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct SunTable {
     from_sky: Option<bool>,

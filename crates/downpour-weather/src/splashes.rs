@@ -43,6 +43,7 @@ impl Splashes {
 
 /// Table of the file.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct SplashesTable {
     enabled: Option<bool>,

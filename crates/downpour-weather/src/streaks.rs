@@ -6,10 +6,11 @@ use serde::de::{Deserializer, Error, Visitor};
 use std::fmt;
 
 /// Maximum number of samples along a streak.
-const MAX_SAMPLES: u32 = 4096;
+pub(super) const MAX_SAMPLES: u32 = 4096;
 
 /// Color of streaks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum StreakLook {
@@ -45,6 +46,7 @@ impl Default for Streaks {
 }
 
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct StreaksTable {
     samples: Option<Samples>,
@@ -65,7 +67,7 @@ impl StreaksTable {
 
 /// Number of samples, or `None` for a table.
 #[derive(Clone, Copy, Debug)]
-struct Samples(Option<u32>);
+pub(super) struct Samples(Option<u32>);
 
 impl<'de> Deserialize<'de> for Samples {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {

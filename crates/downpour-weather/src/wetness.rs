@@ -205,6 +205,7 @@ impl Wetness {
 }
 
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct WetnessTable {
     enabled: Option<bool>,

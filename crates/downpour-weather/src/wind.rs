@@ -56,6 +56,7 @@ impl WindBox {
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub(super) enum WindTable {
     Uniform(UniformTable),
@@ -66,6 +67,7 @@ pub(super) enum WindTable {
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct UniformTable {
     speed_m_s: NumberKeys<WindMS>,
@@ -74,6 +76,11 @@ pub(super) struct UniformTable {
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(bound = "R: super::quantity::Range", rename = "Singularity")
+)]
 #[serde(deny_unknown_fields, bound = "R: Range")]
 pub(super) struct SingularityTable<R> {
     strength_m2_s: Option<NumberKeys<R>>,
@@ -85,6 +92,7 @@ pub(super) struct SingularityTable<R> {
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct TornadoTable {
     circulation_m2_s: NumberKeys<Turning>,
@@ -96,6 +104,7 @@ pub(super) struct TornadoTable {
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 enum CoreWord {
     Rosenhead,
@@ -104,6 +113,7 @@ enum CoreWord {
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct GustsTable {
     intensity: Option<In<Intensity>>,
@@ -112,6 +122,7 @@ pub(super) struct GustsTable {
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct TurbulenceTable {
     speed_m_s: Option<In<EddyMS>>,
@@ -120,6 +131,7 @@ pub(super) struct TurbulenceTable {
 }
 
 #[derive(Debug, Default, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct WindFieldTable {
     size: Option<Exactly<Whole<1, 4096>, 3>>,

@@ -140,6 +140,7 @@ impl RenderArguments {
         let unresolved = (100.0 * frame.medium.unresolved_fraction()).round();
         let weather = renderer.weather();
         let rate = weather.rain_at(time_s).rate_mm_h;
+        let rate = (rate * 1.0e3).round() / 1.0e3;
         self.say(&format!(
             "rain: {rate} mm/h, {drawn} drops drawn; {unresolved} % of its cross-section to 50 m is unresolved"
         ));

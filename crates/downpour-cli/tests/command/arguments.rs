@@ -5,14 +5,14 @@ use crate::child::downpour;
 #[test]
 fn help_and_version_are_results() {
     let help = downpour(&["--help"]).succeeded().stdout;
-    for word in ["render", "check", "mask", "drop", "rain", "adapters", "Exit codes"] {
+    for word in ["render", "check", "mask", "drop", "rain", "schema", "adapters", "Exit codes"] {
         assert!(help.contains(word), "{help}");
     }
     assert_eq!(
         downpour(&["--version"]).succeeded().stdout,
         format!("downpour {}\n", env!("CARGO_PKG_VERSION"))
     );
-    for command in ["render", "check", "mask", "drop", "rain", "adapters"] {
+    for command in ["render", "check", "mask", "drop", "rain", "schema", "adapters"] {
         assert!(downpour(&[command, "--help"]).succeeded().stdout.contains("Usage: downpour"), "{command}");
     }
 }
@@ -41,6 +41,13 @@ fn what_is_not_known_is_refused_in_one_line() {
             .len()
             < 3000
     );
+}
+
+#[test]
+fn the_schema_is_json_with_the_keys_of_a_weather() {
+    let schema: serde_json::Value = serde_json::from_str(&downpour(&["schema"]).succeeded().stdout).unwrap();
+    assert_eq!(schema["properties"]["rain"]["properties"]["seed"]["minimum"], 0);
+    downpour(&["schema", "rain"]).failed(2, &["'rain'"]);
 }
 
 /// A panic of `println!` would be exit code 101.

@@ -33,6 +33,7 @@ const DISTANCE_M: [f64; 2] = [1000.0, 4000.0];
 const CIRCLE_DEG: f64 = 360.0;
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct FlashTable {
     time_s: In<KeyTimeS>,
@@ -47,6 +48,7 @@ pub(crate) struct FlashTable {
 }
 
 #[derive(Debug, Default, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct LightningTable {
     enabled: Option<bool>,
