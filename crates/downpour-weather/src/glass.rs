@@ -26,6 +26,9 @@ const MAX_ROWS: u32 = 4096;
 /// Maximum angle of a wiper's keys in the lattice.
 const MAX_RAD: f64 = 7.0;
 
+/// Maximum number of wipers that are drawn.
+const MAX_DRAWN: usize = 8;
+
 /// Object in focus.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -103,6 +106,8 @@ pub struct Pane {
     pub seed: u64,
     /// Wipers. The times of their keys are those of the weather; a sweep starts with the rain on the pane.
     pub wipers: Vec<GlassWiper>,
+    /// True for each of the wipers whose blade and arm are drawn; at most 8 are.
+    pub wipers_drawn: Vec<bool>,
 }
 
 impl Pane {
@@ -215,6 +220,7 @@ struct WiperTable {
     to_deg: Option<In<TurnDeg>>,
     period_s: Option<In<PeriodS>>,
     angle_deg: Option<NumberKeys<TurnDeg>>,
+    is_drawn: Option<bool>,
     #[serde(default)]
     worn: Vec<WornTable>,
 }
@@ -257,6 +263,7 @@ impl GlassTable {
             drying_mm_h: number(self.drying_mm_h.map(|rate| rate.0), 0.0),
             seed: self.seed.unwrap_or(rain.seed),
             wipers: Vec::new(),
+            wipers_drawn: Vec::new(),
         };
         if pane.contact.receding_rad > pane.contact.advancing_rad {
             let (low, high) =
@@ -290,7 +297,14 @@ impl GlassTable {
             checked.map_err(|error| refused(&format!("glass.wiper[{i}]"), size, &error, positions))?;
             wipers.push(wiper);
         }
-        Ok(Pane { wipers, ..pane })
+        let wipers_drawn: Vec<bool> = self.wiper.iter().map(|table| table.is_drawn.unwrap_or(true)).collect();
+        let drawn = wipers_drawn.iter().filter(|is_drawn| **is_drawn).count();
+        if drawn > MAX_DRAWN {
+            let found = format!("{drawn} that are drawn");
+            let allowed = format!("at most {MAX_DRAWN} that are drawn: is_drawn = false for others");
+            return Err(positions.limit("glass.wiper", found, &allowed));
+        }
+        Ok(Pane { wipers, wipers_drawn, ..pane })
     }
 }
 

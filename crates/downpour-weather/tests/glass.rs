@@ -38,6 +38,7 @@ worn = [{ from_m = 0.2, to_m = 0.22, leaves = 0.7 }]
 pivot_m = [0.1, 0.62]
 length_m = 0.4
 inner_m = 0.1
+is_drawn = false
 angle_deg = [[-2, 0], [0, 90], [3, 0]]
 "#;
 
@@ -63,6 +64,7 @@ fn every_key_arrives() {
     assert!(matches!(one.motion, GlassWiperMotion::Sweep { period_s: 1.4, .. }));
     assert_eq!(one.worn, [GlassWornBand { from_m: 0.2, to_m: 0.22, leaves: 0.7 }]);
     assert_eq!((one.outer_m, two.inner_m), (0.55, 0.1));
+    assert_eq!(pane.wipers_drawn, [true, false]);
     // The lattice's time starts 12 s earlier: at its 12 s the keyed blade is vertical.
     let weather = Weather::parse("w.toml", ALL).unwrap();
     let options = pane.options([1.2, 0.6], &weather.rain, -12.0);
@@ -126,6 +128,14 @@ fn what_cannot_be_is_refused_with_its_key() {
         2,
         "line 3, column 1: glass.wiper[0]: speed of a blade 219.3245 rad/s; allowed: 0 to 20",
     );
+    let told = |text: &str| Weather::parse("w.toml", text).expect_err(text).to_string();
+    let drawn = "pivot_m = [0.5, 0.5]\nlength_m = 0.3\nangle_deg = 1\nis_drawn = ";
+    assert!(told(&wiper(&format!("{drawn}1"))).contains("glass.wiper[0].is_drawn"));
+    let many = |is_drawn: &str| {
+        wiper(&format!("{drawn}{is_drawn}")) + &format!("[[glass.wiper]]\n{drawn}true\n").repeat(8)
+    };
+    assert!(told(&many("true")).contains("glass.wiper: 9 that are drawn; allowed: at most 8"));
+    assert!(Weather::parse("w.toml", &many("false")).is_ok());
     says(
         &wiper("pivot_m = [0.5, 0.5]\nangle_deg = 1"),
         2,

@@ -7,12 +7,13 @@ use downpour_drop::optics::water_index_in_air;
 use downpour_lattice::glass::{GlassOptions, GlassState};
 use downpour_math::ops::f64 as ops;
 use downpour_shaders::render::glass::{
-    GLASS_PICTURE_EXACT, GLASS_PICTURE_GLASS, GLASS_PICTURE_SCENE, GLASS_PICTURE_TATARCHUK,
+    GLASS_PICTURE_BLADES, GLASS_PICTURE_EXACT, GLASS_PICTURE_GLASS, GLASS_PICTURE_SCENE, GLASS_PICTURE_TATARCHUK,
 };
 use downpour_weather::{Pane, PaneFocus, PaneFresnel, PaneShadow, Rain, Weather};
 use downpour_wind::Keyed;
 use glam::DVec3;
 
+use super::blade::GlassPictureBlade;
 use super::drops::{Binned, binned};
 use super::error::PaneError;
 use super::frame::{GlassPicture, GlassPictureFrame, levels, samples};
@@ -194,8 +195,24 @@ impl WetPane {
         self.lattice.options().contact.radius(PI / 6.0 * diameter * diameter * diameter) as f32
     }
 
+    /// The wipers that are drawn, and their number.
+    fn blades(&self, shutter_s: f64) -> ([GlassPictureBlade; GLASS_PICTURE_BLADES as usize], u32) {
+        let options = self.lattice.options();
+        let above = f64::from(self.above) * options.cell_m;
+        let time_s = self.lattice.ticks() as f64 * self.lattice.tick_s();
+        let mut blades = [GlassPictureBlade::default(); GLASS_PICTURE_BLADES as usize];
+        let drawn = options.wipers.iter().zip(&self.pane.wipers_drawn).filter(|(_, is_drawn)| **is_drawn);
+        let mut count = 0;
+        for (blade, (wiper, _)) in blades.iter_mut().zip(drawn) {
+            *blade = GlassPictureBlade::new(wiper, time_s, shutter_s, above);
+            count += 1;
+        }
+        (blades, count)
+    }
+
     /// Returns the pane in its present state, in front of a picture of `grid` samples along an edge of a pixel.
-    /// `environment_texels` is the number of texels of the environment map, all levels.
+    /// `environment_texels` is the number of texels of the environment map, all levels. Blades of wipers move for `shutter_s` seconds,
+    /// half of them before the time of the pane.
     ///
     /// # Errors
     /// As [`WetPane::new`].
@@ -206,6 +223,7 @@ impl WetPane {
         grid: u32,
         lighting: &dyn Lighting,
         environment_texels: usize,
+        shutter_s: f64,
     ) -> Result<GlassPicture, PaneError> {
         let position = PanePosition::new(&self.pane, viewpoint)?;
         let binned = self.binned()?;
@@ -221,6 +239,7 @@ impl WetPane {
         let [columns, rows] = options.size;
         let hidden = (columns * self.above) as usize;
         let wet = self.state()?.traversal.get(hidden..).unwrap_or_default();
+        let (blades, blade_count) = self.blades(shutter_s);
         let lights = sources(lighting, camera.eye);
         let word = |bytes: &[u8]| {
             bytes.iter().enumerate().fold(0u32, |word, (k, &byte)| word | (u32::from(byte) << (8 * k)))
@@ -258,8 +277,10 @@ impl WetPane {
                 first_row: 0,
                 lights: lights.len() as u32,
                 lit_from: self.highlight_radius(),
-                unused: [0; 2],
+                blade_count,
+                unused: 0,
                 levels,
+                blades,
             },
             // A buffer has at least one element.
             drops: if binned.drops.is_empty() { vec![Default::default()] } else { binned.drops },
