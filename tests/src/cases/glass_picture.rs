@@ -154,8 +154,12 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             "glass_picture_blade_part",
             &BLADE,
             &[Made(wiper), Fixed(0.6), Fixed(-0.8), Uniform(0.2, 0.4), Uniform(0.1, 0.4)],
-            Tol::relative(1.0e-4, 1.0e-5, "quotients (2.5 ulp) of differences of lengths of a meter by millimeters")
-                .with_outliers(2.0e-3),
+            Tol::relative(
+                1.0e-4,
+                1.0e-5,
+                "quotients (2.5 ulp) of differences of lengths of a meter by millimeters",
+            )
+            .with_outliers(2.0e-3),
             |a| {
                 let blade = bytemuck::cast::<[f32; 24], GlassPictureBlade>(a.f32s());
                 let (direction, position) = (Vec2::from(a.f32s()), Vec2::from(a.f32s()));
@@ -230,7 +234,8 @@ fn pane(keys: &str) -> GlassPicture {
     let frame = RenderFrame::new(&stage.data, &stage.viewpoint, SIZE, 1, 0, 0).expect("a frame");
     let texels = (4 * CAPTURE * CAPTURE - 1) / 3;
     let lighting = SceneView { data: &stage.data, frame: &frame };
-    pane.picture(&stage.viewpoint, &frame.camera, frame.grid, &lighting, texels as usize, 0.1).expect("a picture")
+    pane.picture(&stage.viewpoint, &frame.camera, frame.grid, &lighting, texels as usize, 0.1)
+        .expect("a picture")
 }
 
 /// Smooth light of some colors, at distances of 1 to 30 m.

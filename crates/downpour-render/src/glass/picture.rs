@@ -150,8 +150,7 @@ impl Look<'_> {
         let to_room = self.glass_picture_world((aside * turned).extend(-upright));
         let room = self.glass_picture_round(to_room, GLASS_PICTURE_DIFFUSE) * self.glass.frame.room;
         let side = if turned > 0.0 { 1.0 } else { -1.0 };
-        let to_scene =
-            self.glass_picture_world((aside * (side * FRAC_1_SQRT_2)).extend(FRAC_1_SQRT_2));
+        let to_scene = self.glass_picture_world((aside * (side * FRAC_1_SQRT_2)).extend(FRAC_1_SQRT_2));
         room * (1.0 - outside) + self.glass_picture_round(to_scene, GLASS_PICTURE_DIFFUSE) * outside
     }
 
