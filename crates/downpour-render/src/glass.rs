@@ -15,6 +15,11 @@
 //! Source: Tatarchuk & Isidoro 2006, section 5, has normals from the mass, a refracted picture and a Fresnel term. Here rays
 //! follow Snell's law, so that a drop shows the far scene upside down, and its rim is dark where light is totally reflected.
 
+#[cfg(not(feature = "parity"))]
+pub(crate) mod blade;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
+pub mod blade;
 mod drops;
 mod error;
 mod frame;
@@ -35,6 +40,7 @@ pub(crate) mod water;
 #[doc(hidden)]
 pub mod water;
 
+pub use blade::GlassPictureBlade;
 pub use error::PaneError;
 pub use frame::{GlassPicture, GlassPictureFrame};
 pub use lattice::PaneLattice;

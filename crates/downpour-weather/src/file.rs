@@ -17,7 +17,9 @@ use super::splashes::{Splashes, SplashesTable};
 use super::streaks::StreaksTable;
 use super::wetness::{Wetness, WetnessTable};
 use super::wind::{self, GustsTable, TurbulenceTable, WindFieldTable, WindTable};
-use super::{Camera, MAX_DRIPS, MAX_LIGHTS, MAX_MODELS, MAX_PUDDLES, Weather, camera::CameraTable};
+use super::{
+    Camera, CameraPath, MAX_DRIPS, MAX_LIGHTS, MAX_MODELS, MAX_PUDDLES, Weather, camera::CameraTable,
+};
 use downpour_scene::error::{SceneError, quoted};
 use downpour_scene::uri::{Address, RelativePath, check};
 use serde::Deserialize;
@@ -96,13 +98,15 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
     let puddles = numbered(&tables.puddle, |i, table| Puddle::checked(i, table, &positions))?;
     let (puddles, fills): (Vec<_>, Vec<_>) = puddles.into_iter().unzip();
     puddle::check_all(&puddles, &positions)?;
+    let wind = wind::checked(&tables.wind, tables.gusts.as_ref(), tables.turbulence.as_ref(), &positions)?;
+    let is_still = wind.is_still() && camera.path.as_ref().is_none_or(CameraPath::is_still);
     Ok(Weather {
         name: String::new(),
         wetness: Wetness::checked(&tables.wetness, &rain, &positions)?,
         splashes: Splashes::checked(&tables.splashes, &positions)?,
         drips: Drips::checked(&tables.drips, &tables.drip),
         lightning: Lightning::checked(&tables.lightning, &tables.flash, rain.seed, &positions)?,
-        glass: tables.glass.map(|glass| glass.checked(&heaviest, &positions)).transpose()?,
+        glass: tables.glass.map(|glass| glass.checked(&heaviest, is_still, &positions)).transpose()?,
         glow: tables.glow.checked(),
         rain,
         drop_model,
@@ -111,7 +115,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         camera,
         models: numbered(&tables.model, |i, table| Model::checked(i, table, &positions))?,
         lights,
-        wind: wind::checked(&tables.wind, tables.gusts.as_ref(), tables.turbulence.as_ref(), &positions)?,
+        wind,
         wind_box: tables.wind_field.checked(&positions)?,
         streaks,
         puddles,

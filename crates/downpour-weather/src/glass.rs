@@ -1,12 +1,12 @@
 //! `[glass]` and `[[glass.wiper]]`: a pane before the camera, and the rain on it.
 
-use super::Rain;
 use super::fault::Positions;
 use super::quantity::{
     AboveM, AdvancingDeg, BeforeS, BladeM, CellMm, DryingMmH, Exactly, FilmUm, Fraction, HighlightMm, In,
     PaneApertureMm, PaneM, PaneMS, PaneTiltDeg, PeriodS, PivotM, ReachM, RecedingDeg, TurnDeg,
 };
 use super::wind::keys::NumberKeys;
+use super::{Rain, Weather};
 use downpour_lattice::glass::{
     GlassAir, GlassContact, GlassError, GlassOptions, GlassRain, GlassWiper, GlassWiperKey, GlassWiperMotion,
     GlassWornBand,
@@ -15,6 +15,7 @@ use downpour_math::OutOfRange;
 use downpour_math::ops::f64 as ops;
 use downpour_scene::error::SceneError;
 use downpour_wind::Keyed;
+use glam::DVec3;
 use serde::Deserialize;
 
 /// Maximum speed of drops on a pane of a weather, m/s.
@@ -25,6 +26,18 @@ const MAX_ROWS: u32 = 4096;
 
 /// Maximum angle of a wiper's keys in the lattice.
 const MAX_RAD: f64 = 7.0;
+
+/// Maximum speed of the air toward a pane, m/s.
+const MAX_SPEED_M_S: f64 = 100.0;
+
+/// Speed of the air toward a pane where there is neither wind nor motion, m/s: a light breeze.
+const STILL_M_S: f64 = 3.0;
+
+/// Time over which the speed of an eye is taken, s.
+const EYE_S: f64 = 0.1;
+
+/// Maximum number of wipers that are drawn.
+const MAX_DRAWN: usize = 8;
 
 /// Object in focus.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
@@ -79,8 +92,8 @@ pub struct Pane {
     pub cell: f64,
     /// Height of the pane above the picture, m: water runs down from there.
     pub above: f64,
-    /// Speed of the air with the rain toward the pane, m/s, over time.
-    pub speed: Keyed<f64>,
+    /// Speed of the air with the rain toward the pane, m/s, over time; `None`: that of wind and eye, [`Weather::pane_speed`].
+    pub speed: Option<Keyed<f64>>,
     /// Time of rain on the pane before the first picture, s.
     pub before: f64,
     /// Object in focus.
@@ -106,6 +119,8 @@ pub struct Pane {
     pub seed: u64,
     /// Wipers. The times of their keys are those of the weather; a sweep starts with the rain on the pane.
     pub wipers: Vec<GlassWiper>,
+    /// True for each of the wipers whose blade and arm are drawn; at most 8 are.
+    pub wipers_drawn: Vec<bool>,
 }
 
 impl Pane {
@@ -128,7 +143,9 @@ impl Pane {
     /// [`Pane::rows_above`] rows are above the visible part. The tick is that of the fastest air.
     #[must_use]
     pub fn options(&self, size: [f64; 2], rain: &Rain, begin_s: f64) -> GlassOptions {
-        let fastest = self.speed.keys().iter().fold(0.0, |most: f64, &(_, speed)| most.max(speed));
+        let fastest = self.speed.as_ref().map_or(MAX_SPEED_M_S, |speed| {
+            speed.keys().iter().fold(0.0, |most: f64, &(_, speed)| most.max(speed))
+        });
         let (rain, air) = self.weather(rain, fastest);
         let [columns, rows] = self.cells(size);
         let above = self.rows_above(size);
@@ -168,6 +185,31 @@ impl Pane {
             },
             GlassAir { speed_m_s: along, ..GlassAir::default() },
         )
+    }
+}
+
+impl Weather {
+    /// Speed of the air with the rain toward the pane in front of the camera at a time in seconds, m/s, 0 to 100: that of the pane's key, else
+    /// the horizontal velocity of the eye less that of the wind, along the direction in which the eye looks. The wind is that of uniform
+    /// parts and gusts. Before `first_s`, the time of the first picture, the eye has the velocity of that time. `forward` is the view
+    /// direction of a camera that this weather does not place: its motion is not known here. 0 without a pane.
+    #[must_use]
+    #[expect(clippy::arithmetic_side_effects, reason = "of floats")]
+    pub fn pane_speed(&self, time_s: f64, first_s: f64, forward: DVec3) -> f64 {
+        let Some(pane) = &self.glass else { return 0.0 };
+        if let Some(speed) = &pane.speed {
+            return speed.at(time_s);
+        }
+        let moves_s = time_s.max(first_s);
+        let (forward, eye) = match &self.camera.path {
+            Some(path) => {
+                let (now, later) = (path.at(moves_s), path.at(moves_s + EYE_S));
+                (now.forward, (later.position - now.position) / EYE_S)
+            }
+            None => (forward, DVec3::ZERO),
+        };
+        let ahead = DVec3::new(forward.x, 0.0, forward.z).normalize_or_zero();
+        (eye - self.wind.air().velocity(time_s)).dot(ahead).clamp(0.0, MAX_SPEED_M_S)
     }
 }
 
@@ -220,6 +262,7 @@ struct WiperTable {
     to_deg: Option<In<TurnDeg>>,
     period_s: Option<In<PeriodS>>,
     angle_deg: Option<NumberKeys<TurnDeg>>,
+    is_drawn: Option<bool>,
     #[serde(default)]
     worn: Vec<WornTable>,
 }
@@ -234,7 +277,13 @@ struct WornTable {
 }
 
 impl GlassTable {
-    pub(super) fn checked(&self, rain: &Rain, positions: &Positions<'_>) -> Result<Pane, SceneError> {
+    /// The pane in a rain; `is_still`: there is neither wind nor a camera that moves.
+    pub(super) fn checked(
+        &self,
+        rain: &Rain,
+        is_still: bool,
+        positions: &Positions<'_>,
+    ) -> Result<Pane, SceneError> {
         let number = |given: Option<f64>, default: f64| given.unwrap_or(default);
         let contact = GlassContact::default();
         let pane = Pane {
@@ -244,8 +293,9 @@ impl GlassTable {
             cell: number(self.cell_mm.map(|mm| mm.0), 0.6) * 1.0e-3,
             above: number(self.above_m.map(|m| m.0), 0.15),
             speed: match &self.speed_m_s {
-                Some(keys) => keys.keyed("glass.speed_m_s", positions)?,
-                None => 3.0.into(),
+                Some(keys) => Some(keys.keyed("glass.speed_m_s", positions)?),
+                None if is_still => Some(STILL_M_S.into()),
+                None => None,
             },
             before: number(self.before_s.map(|s| s.0), 60.0),
             focus: self.focus.unwrap_or_default(),
@@ -263,6 +313,7 @@ impl GlassTable {
             drying_mm_h: number(self.drying_mm_h.map(|rate| rate.0), 0.0),
             seed: self.seed.unwrap_or(rain.seed),
             wipers: Vec::new(),
+            wipers_drawn: Vec::new(),
         };
         if pane.contact.receding_rad > pane.contact.advancing_rad {
             let (low, high) =
@@ -296,7 +347,14 @@ impl GlassTable {
             checked.map_err(|error| refused(&format!("glass.wiper[{i}]"), size, &error, positions))?;
             wipers.push(wiper);
         }
-        Ok(Pane { wipers, ..pane })
+        let wipers_drawn: Vec<bool> = self.wiper.iter().map(|table| table.is_drawn.unwrap_or(true)).collect();
+        let drawn = wipers_drawn.iter().filter(|is_drawn| **is_drawn).count();
+        if drawn > MAX_DRAWN {
+            let found = format!("{drawn} that are drawn");
+            let allowed = format!("at most {MAX_DRAWN} that are drawn: is_drawn = false for others");
+            return Err(positions.limit("glass.wiper", found, &allowed));
+        }
+        Ok(Pane { wipers, wipers_drawn, ..pane })
     }
 }
 

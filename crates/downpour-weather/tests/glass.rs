@@ -38,6 +38,7 @@ worn = [{ from_m = 0.2, to_m = 0.22, leaves = 0.7 }]
 pivot_m = [0.1, 0.62]
 length_m = 0.4
 inner_m = 0.1
+is_drawn = false
 angle_deg = [[-2, 0], [0, 90], [3, 0]]
 "#;
 
@@ -56,13 +57,14 @@ fn every_key_arrives() {
         (12.0, 8.0e-3, 0.2, 20.0 * 1.0e-6)
     );
     assert_eq!((pane.highlight, pane.shadows), (2.5e-3, PaneShadow::Tatarchuk2006));
-    assert_eq!((pane.speed.at(10.0), pane.drying_mm_h), (20.0, 0.5));
+    assert_eq!((pane.speed.as_ref().unwrap().at(10.0), pane.drying_mm_h), (20.0, 0.5));
     assert!((pane.tilt.to_degrees() - 30.0).abs() < 1.0e-9);
     assert!((pane.contact.advancing_rad.to_degrees() - 70.0).abs() < 1.0e-9);
     let [one, two] = &pane.wipers[..] else { panic!("{} wipers", pane.wipers.len()) };
     assert!(matches!(one.motion, GlassWiperMotion::Sweep { period_s: 1.4, .. }));
     assert_eq!(one.worn, [GlassWornBand { from_m: 0.2, to_m: 0.22, leaves: 0.7 }]);
     assert_eq!((one.outer_m, two.inner_m), (0.55, 0.1));
+    assert_eq!(pane.wipers_drawn, [true, false]);
     // The lattice's time starts 12 s earlier: at its 12 s the keyed blade is vertical.
     let weather = Weather::parse("w.toml", ALL).unwrap();
     let options = pane.options([1.2, 0.6], &weather.rain, -12.0);
@@ -126,9 +128,48 @@ fn what_cannot_be_is_refused_with_its_key() {
         2,
         "line 3, column 1: glass.wiper[0]: speed of a blade 219.3245 rad/s; allowed: 0 to 20",
     );
+    let told = |text: &str| Weather::parse("w.toml", text).expect_err(text).to_string();
+    let drawn = "pivot_m = [0.5, 0.5]\nlength_m = 0.3\nangle_deg = 1\nis_drawn = ";
+    assert!(told(&wiper(&format!("{drawn}1"))).contains("glass.wiper[0].is_drawn"));
+    let many = |is_drawn: &str| {
+        wiper(&format!("{drawn}{is_drawn}")) + &format!("[[glass.wiper]]\n{drawn}true\n").repeat(8)
+    };
+    assert!(told(&many("true")).contains("glass.wiper: 9 that are drawn; allowed: at most 8"));
+    assert!(Weather::parse("w.toml", &many("false")).is_ok());
     says(
         &wiper("pivot_m = [0.5, 0.5]\nangle_deg = 1"),
         2,
         "line 3, column 1: glass.wiper[0]: no length_m; allowed: length_m is needed",
     );
+}
+
+/// An eye that moves at 10 m/s into a wind of 4 m/s meets the rain at 14 m/s, with the wind behind it at 6 m/s, and a wind from the side adds
+/// nothing; a window in a wind gets its part along the window's normal; from behind no rain comes. The key overrides all.
+#[test]
+fn the_rain_meets_a_pane_at_the_speed_of_eye_and_wind() {
+    let speed = |text: &str, time_s: f64| {
+        let weather = Weather::parse("w.toml", text).unwrap();
+        weather.pane_speed(time_s, 0.0, glam::DVec3::NEG_Z)
+    };
+    let drive =
+        "[camera]\nposition_m = [[0, [0, 1.5, 0]], [10, [0, 1.5, -100]]]\nlook_at_m = [0, 1.5, -1000]\n";
+    let still = "[camera]\nposition_m = [0, 1.5, 0]\n";
+    let wind =
+        |x: f64, z: f64| format!("[[wind]]\nuniform = {{ speed_m_s = 4, direction = [{x}, 0, {z}] }}\n");
+    let near = |text: String, time_s: f64, expected: f64| {
+        let found = speed(&text, time_s);
+        assert!((found - expected).abs() < 1.0e-3, "{text}at {time_s} s: {found}, not {expected}");
+    };
+    near(format!("{drive}[glass]\n"), 5.0, 10.0);
+    // Before the first picture as at it; at the end of its path the eye stands.
+    near(format!("{drive}[glass]\n"), -30.0, 10.0);
+    near(format!("{drive}[glass]\n"), 11.0, 0.0);
+    near(format!("{drive}{}[glass]\n", wind(0.0, 1.0)), 5.0, 14.0);
+    near(format!("{drive}{}[glass]\n", wind(0.0, -1.0)), 5.0, 6.0);
+    near(format!("{drive}{}[glass]\n", wind(1.0, 0.0)), 5.0, 10.0);
+    near(format!("{still}{}[glass]\n", wind(0.0, 1.0)), 0.0, 4.0);
+    near(format!("{still}{}[glass]\n", wind(3.0, 4.0)), 0.0, 3.2);
+    near(format!("{still}{}[glass]\n", wind(0.0, -1.0)), 0.0, 0.0);
+    near(format!("{drive}{}[glass]\nspeed_m_s = 7\n", wind(0.0, 1.0)), 5.0, 7.0);
+    near(format!("{still}[glass]\n"), 0.0, 3.0);
 }

@@ -519,6 +519,13 @@ fn through(pane: &WetPane, stage: &Stage, options: &PictureOptions) -> Result<Th
         (layout, Some(trace_environment(&stage.data, &frame, &layout).texels))
     };
     let texels = layout.texels() as usize;
-    let glass = pane.picture(&stage.viewpoint, &camera, frame.grid, &lighting, texels)?;
+    let glass = pane.picture(
+        &stage.viewpoint,
+        &camera,
+        frame.grid,
+        &lighting,
+        texels,
+        options.rain.exposure.shutter_s,
+    )?;
     Ok(Through { glass, environment, glow: options.glow, camera })
 }

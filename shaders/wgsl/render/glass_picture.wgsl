@@ -47,9 +47,12 @@ struct GlassPictureFrame {
     // Lamps, and the least radius of the disks of drops that show them, m.
     lights: u32,
     lit_from: f32,
-    unused: vec2u,
+    // Blades of wipers.
+    blade_count: u32,
+    unused: u32,
     // Width, height and first texel of each level of the picture.
     levels: array<vec4u, GLASS_PICTURE_LEVELS>,
+    blades: array<GlassPictureBlade, GLASS_PICTURE_BLADES>,
 }
 
 // Surface of the pane that a ray meets.
@@ -332,8 +335,42 @@ fn glass_picture_through(position: vec2f, d: vec3f, from_eye: vec3f, shift: vec2
     return sum;
 }
 
-// A sample of a pixel: a position of the lens (xy, in its radius) and of the pixel (zw).
-fn glass_picture_sample(x: f32, y: f32, distance: f32, at: vec4f) -> vec3f {
+// Radiance of a diffuse surface of the eye's side of a blade. `aside` is where its rounded face is turned, of length 1; `across` is how far
+// it is turned there, -1 to 1. What it sees of the room and of the scene is as much as a face of that slope sees.
+fn glass_picture_diffuse(aside: vec2f, across: f32) -> vec3f {
+    let turned = 0.8 * across;
+    let upright = sqrt(1.0 - turned * turned);
+    let outside = 0.5 - 0.5 * upright;
+    let to_room = glass_picture_world(vec3f(aside * turned, -upright));
+    let room = glass_picture_round(to_room, GLASS_PICTURE_DIFFUSE) * glass_picture_frame.room;
+    let side = select(-1.0, 1.0, turned > 0.0);
+    let to_scene = glass_picture_world(vec3f(aside * (side * 0.70710678), 0.70710678));
+    return room * (1.0 - outside) + glass_picture_round(to_scene, GLASS_PICTURE_DIFFUSE) * outside;
+}
+
+// Radiance of the wipers along a ray that meets the pane at a position, in a direction of the pane, at a fraction of the exposure; and 1,
+// or 0 where there is none.
+fn glass_picture_wiper(position: vec2f, d: vec3f, fraction: f32) -> vec4f {
+    for (var k = 0u; k < glass_picture_frame.blade_count; k += 1u) {
+        let direction = glass_picture_blade_at(glass_picture_frame.blades[k], fraction);
+        let part = glass_picture_blade_part(glass_picture_frame.blades[k], direction, position);
+        if part.y > 0.0 {
+            let first = optics_fresnel(d.z, GLASS_PICTURE_INDEX);
+            let aside = vec2f(-direction.y, direction.x);
+            var sum = glass_picture_diffuse(aside, part.x) * (part.y * (1.0 - first));
+            if glass_picture_frame.room > 0.0 {
+                let mirror = glass_picture_world(vec3f(d.xy, -d.z));
+                sum += glass_picture_round(mirror, GLASS_PICTURE_MIRROR) * (glass_picture_frame.room * first);
+            }
+            return vec4f(sum, 1.0);
+        }
+    }
+    return vec4f(0.0);
+}
+
+// A sample of a pixel: a position of the lens (xy, in its radius) and of the pixel (zw), and a fraction
+// of the exposure.
+fn glass_picture_sample(x: f32, y: f32, distance: f32, at: vec4f, moment: f32) -> vec3f {
     let ray = camera_direction(glass_picture_frame.camera, x + at.z, y + at.w);
     let right = glass_picture_frame.camera.right / sqrt(dot(glass_picture_frame.camera.right, glass_picture_frame.camera.right));
     let up = glass_picture_frame.camera.up / sqrt(dot(glass_picture_frame.camera.up, glass_picture_frame.camera.up));
@@ -365,6 +402,10 @@ fn glass_picture_sample(x: f32, y: f32, distance: f32, at: vec4f) -> vec3f {
     if position.x < 0.0 || position.y < 0.0 || position.x > glass_picture_frame.size.x || position.y > glass_picture_frame.size.y {
         return glass_picture_seen(from_eye, direction, shift, pixel + apart * abs(1.0 / depth - 1.0 / far));
     }
+    let wiper = glass_picture_wiper(position, d, moment);
+    if wiper.w > 0.0 {
+        return wiper.xyz;
+    }
     let angle = pixel * among + apart * abs(1.0 / depth - 1.0 / far);
     let spread = vec2f(angle, pixel * pane * among + apart * abs(1.0 - pane / depth));
     return glass_picture_through(position, d, met, shift, spread);
@@ -375,7 +416,8 @@ fn glass_picture_pixel(x: u32, y: u32) -> vec3f {
     let distance = glass_picture_texel(0u, i32(x), i32(y)).w;
     var sum = vec3f(0.0);
     for (var k = 0u; k < glass_picture_frame.samples; k += 1u) {
-        sum += glass_picture_sample(f32(x), f32(y), distance, glass_picture_lens[k]);
+        let moment = fract((f32(k) + 0.5) * GLASS_PICTURE_MOMENT);
+        sum += glass_picture_sample(f32(x), f32(y), distance, glass_picture_lens[k], moment);
     }
     return sum / f32(glass_picture_frame.samples);
 }

@@ -2,12 +2,13 @@
 
 use downpour_gpu::{Gpu, GpuError};
 use downpour_math::rng::{rng_draw, rng_unit};
+use downpour_render::glass::blade::{glass_picture_blade_at, glass_picture_blade_part};
 use downpour_render::glass::light::{glass_picture_light_lobe, glass_picture_light_seen};
 use downpour_render::glass::water::{
     glass_picture_water_cap, glass_picture_water_leave, glass_picture_water_normal, glass_picture_water_top,
 };
 use downpour_render::glass::{
-    GlassPicture, GlassPictureDrop, GlassPictureLight, WetPane, glass_picture_spline,
+    GlassPicture, GlassPictureBlade, GlassPictureDrop, GlassPictureLight, WetPane, glass_picture_spline,
 };
 use downpour_render::gpu::{BehindGlass, GlassRenderer};
 use downpour_render::picture::compose_pixel;
@@ -15,7 +16,7 @@ use downpour_scene::scene::Scene;
 use downpour_scene::sky::{SkyMap, Sun};
 use downpour_shaders::Kernel;
 use downpour_shaders::common::PYRAMID_KERNEL;
-use downpour_shaders::render::glass::{GLASS_PICTURE, GLASS_PICTURE_KERNEL, LIGHT, WATER};
+use downpour_shaders::render::glass::{BLADE, GLASS_PICTURE, GLASS_PICTURE_KERNEL, LIGHT, WATER};
 use downpour_shaders::render::rain::COMPOSE_KERNEL;
 use downpour_trace::data::RenderFrame;
 use downpour_trace::scene::SceneView;
@@ -23,7 +24,7 @@ use downpour_trace::stage::Stage;
 use downpour_weather::{Loaded, Weather};
 use glam::{Vec2, Vec3};
 
-use crate::Domain::{Made, Uniform};
+use crate::Domain::{Fixed, Made, Uniform};
 use crate::compare::{Cpu, Gpu as FromGpu};
 use crate::function::Run;
 use crate::kept::kept;
@@ -82,6 +83,17 @@ fn towards(random: [u32; 4]) -> Vec<u32> {
     direction.to_array().map(f32::to_bits).to_vec()
 }
 
+/// A wiper of 0.3 m that turns while the shutter is open, as words.
+fn wiper(random: [u32; 4]) -> Vec<u32> {
+    let [a, b, c, d] = random.map(rng_unit);
+    let mut words = vec![0.2 + 0.02 * a, 0.4 + 0.02 * b, 0.05, 0.3];
+    for k in 0u8..10 {
+        let angle = 6.0 * c + 0.1 * d * f32::from(k);
+        words.extend([angle.cos(), -angle.sin()]);
+    }
+    words.into_iter().map(f32::to_bits).collect()
+}
+
 fn read(a: &mut Args<'_>) -> GlassPictureDrop {
     bytemuck::cast::<[f32; 16], GlassPictureDrop>(a.f32s())
 }
@@ -127,6 +139,32 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &[Uniform(-4.0, 4.0), Uniform(-4.0, 4.0)],
             Tol::relative(1.0e-6, 1.0e-7, "a root and a division (2.5 ulp each)"),
             |a| glass_picture_water_normal(Vec2::from(a.f32s())).to_array().words(),
+        ),
+        FunctionCase::new(
+            "glass_picture_blade_at",
+            &BLADE,
+            &[Made(wiper), Uniform(0.0, 1.0)],
+            Tol::relative(1.0e-5, 1.0e-6, "a root and a division (2.5 ulp each) of sums of length about 1"),
+            |a| {
+                let blade = bytemuck::cast::<[f32; 24], GlassPictureBlade>(a.f32s());
+                glass_picture_blade_at(&blade, a.f32()).to_array().words()
+            },
+        ),
+        FunctionCase::new(
+            "glass_picture_blade_part",
+            &BLADE,
+            &[Made(wiper), Fixed(0.6), Fixed(-0.8), Uniform(0.2, 0.4), Uniform(0.1, 0.4)],
+            Tol::relative(
+                1.0e-4,
+                1.0e-5,
+                "quotients (2.5 ulp) of differences of lengths of a meter by millimeters",
+            )
+            .with_outliers(2.0e-3),
+            |a| {
+                let blade = bytemuck::cast::<[f32; 24], GlassPictureBlade>(a.f32s());
+                let (direction, position) = (Vec2::from(a.f32s()), Vec2::from(a.f32s()));
+                glass_picture_blade_part(&blade, direction, position).to_array().words()
+            },
         ),
         FunctionCase::new(
             "glass_picture_light_lobe",
@@ -196,7 +234,8 @@ fn pane(keys: &str) -> GlassPicture {
     let frame = RenderFrame::new(&stage.data, &stage.viewpoint, SIZE, 1, 0, 0).expect("a frame");
     let texels = (4 * CAPTURE * CAPTURE - 1) / 3;
     let lighting = SceneView { data: &stage.data, frame: &frame };
-    pane.picture(&stage.viewpoint, &frame.camera, frame.grid, &lighting, texels as usize).expect("a picture")
+    pane.picture(&stage.viewpoint, &frame.camera, frame.grid, &lighting, texels as usize, 0.1)
+        .expect("a picture")
 }
 
 /// Smooth light of some colors, at distances of 1 to 30 m.
@@ -270,7 +309,8 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             self::case(
                 gpu,
                 "before_s = 6\nfocus = 'glass'\ntilt_deg = 35\nspeed_m_s = 12\nadvancing_deg = 100\nfresnel = \
-                 'tatarchuk-2006'",
+                 'tatarchuk-2006'\nsize_m = [0.2, 0.15]\n[[glass.wiper]]\npivot_m = [0.1, 0.16]\nlength_m = \
+                 0.14\nfrom_deg = 20\nto_deg = 160\nperiod_s = 1.3",
             )
         }),
     ]

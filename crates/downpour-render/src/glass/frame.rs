@@ -2,8 +2,9 @@
 
 use downpour_math::ops;
 use downpour_math::pyramid::{PyramidLevel, PyramidRounding, pyramid_append, pyramid_levels};
-use downpour_shaders::render::glass::GLASS_PICTURE_LEVELS;
+use downpour_shaders::render::glass::{GLASS_PICTURE_BLADES, GLASS_PICTURE_LEVELS};
 
+use super::blade::GlassPictureBlade;
 use super::light::GlassPictureLight;
 use super::picture::Look;
 use super::water::GlassPictureDrop;
@@ -72,10 +73,14 @@ pub struct GlassPictureFrame {
     pub lights: u32,
     /// Least radius of the discs of drops that show lamps, m.
     pub lit_from: f32,
+    /// Number of wipers.
+    pub blade_count: u32,
     /// 0.
-    pub unused: [u32; 2],
+    pub unused: u32,
     /// Width, height and first texel of each level of the picture.
     pub levels: [[u32; 4]; GLASS_PICTURE_LEVELS as usize],
+    /// Wipers.
+    pub blades: [GlassPictureBlade; GLASS_PICTURE_BLADES as usize],
 }
 
 /// A pane with its drops, ready to be looked through.

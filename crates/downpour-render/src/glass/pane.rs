@@ -7,12 +7,14 @@ use downpour_drop::optics::water_index_in_air;
 use downpour_lattice::glass::{GlassOptions, GlassState};
 use downpour_math::ops::f64 as ops;
 use downpour_shaders::render::glass::{
-    GLASS_PICTURE_EXACT, GLASS_PICTURE_GLASS, GLASS_PICTURE_SCENE, GLASS_PICTURE_TATARCHUK,
+    GLASS_PICTURE_BLADES, GLASS_PICTURE_EXACT, GLASS_PICTURE_GLASS, GLASS_PICTURE_SCENE,
+    GLASS_PICTURE_TATARCHUK,
 };
 use downpour_weather::{Pane, PaneFocus, PaneFresnel, PaneShadow, Rain, Weather};
 use downpour_wind::Keyed;
 use glam::DVec3;
 
+use super::blade::GlassPictureBlade;
 use super::drops::{Binned, binned};
 use super::error::PaneError;
 use super::frame::{GlassPicture, GlassPictureFrame, levels, samples};
@@ -42,9 +44,13 @@ const SODIUM_M: f64 = 589.3e-9;
 #[derive(Debug)]
 pub struct WetPane {
     pane: Pane,
-    rain: Rain,
+    /// The weather it is in.
+    weather: Weather,
     /// Rain rate over time, mm/h.
     rates: Keyed<f64>,
+    /// View direction of the first picture, and its time, s.
+    forward: DVec3,
+    first_s: f64,
     size: [f64; 2],
     begin_s: f64,
     water: f64,
@@ -90,13 +96,15 @@ impl WetPane {
         let size = pane.size.unwrap_or_else(|| position.shown(viewpoint, weather.size));
         let begin_s = first_s - pane.before;
         let mut lattice = lattice(&pane.options(size, &weather.heaviest_rain(), begin_s))?;
-        let (rain, air) = pane.weather(&weather.rain_at(begin_s), pane.speed.at(begin_s));
+        let forward = viewpoint.forward.as_dvec3();
+        let speed = weather.pane_speed(begin_s, first_s, forward);
+        let (rain, air) = pane.weather(&weather.rain_at(begin_s), speed);
         lattice.set_weather(&rain, &air)?;
         let water = water_index_in_air(SODIUM_M, &weather.rain.air).unwrap_or(WATER_INDEX);
         let above = pane.rows_above(size);
         let rates = weather.rates_mm_h().into_owned();
-        let (pane, rain, state) = (pane.clone(), weather.rain, OnceLock::new());
-        Ok(Some(Self { pane, rain, rates, size, begin_s, water, above, lattice, state }))
+        let (pane, weather, state) = (pane.clone(), weather.clone(), OnceLock::new());
+        Ok(Some(Self { pane, weather, rates, forward, first_s, size, begin_s, water, above, lattice, state }))
     }
 
     /// Steps rain and wipers to a time in seconds. The drops do not depend on how the time is divided.
@@ -107,14 +115,16 @@ impl WetPane {
         let tick = self.lattice.tick_s();
         let until = ((time_s - self.begin_s) / tick + 1.0e-6).floor().max(0.0) as u64;
         let every = (WEATHER_S / tick).ceil().max(1.0) as u64;
-        let moves = self.pane.speed.keys().len().max(self.rates.keys().len()) > 1;
+        let speeds = self.pane.speed.as_ref().map_or(usize::MAX, |speed| speed.keys().len());
+        let moves = speeds.max(self.rates.keys().len()) > 1;
         while self.lattice.ticks() < until {
             self.state = OnceLock::new();
             let done = self.lattice.ticks();
             if moves && done.is_multiple_of(every) {
                 let now = self.begin_s + done as f64 * tick;
-                let rain = Rain { rate_mm_h: self.rates.at(now), ..self.rain };
-                let (rain, air) = self.pane.weather(&rain, self.pane.speed.at(now));
+                let rain = Rain { rate_mm_h: self.rates.at(now), ..self.weather.rain };
+                let speed = self.weather.pane_speed(now, self.first_s, self.forward);
+                let (rain, air) = self.pane.weather(&rain, speed);
                 self.lattice.set_weather(&rain, &air)?;
             }
             let count = (every - done % every).min(until - done);
@@ -194,8 +204,24 @@ impl WetPane {
         self.lattice.options().contact.radius(PI / 6.0 * diameter * diameter * diameter) as f32
     }
 
+    /// The wipers that are drawn, and their number.
+    fn blades(&self, shutter_s: f64) -> ([GlassPictureBlade; GLASS_PICTURE_BLADES as usize], u32) {
+        let options = self.lattice.options();
+        let above = f64::from(self.above) * options.cell_m;
+        let time_s = self.lattice.ticks() as f64 * self.lattice.tick_s();
+        let mut blades = [GlassPictureBlade::default(); GLASS_PICTURE_BLADES as usize];
+        let drawn = options.wipers.iter().zip(&self.pane.wipers_drawn).filter(|(_, is_drawn)| **is_drawn);
+        let mut count = 0;
+        for (blade, (wiper, _)) in blades.iter_mut().zip(drawn) {
+            *blade = GlassPictureBlade::new(wiper, time_s, shutter_s, above);
+            count += 1;
+        }
+        (blades, count)
+    }
+
     /// Returns the pane in its present state, in front of a picture of `grid` samples along an edge of a pixel.
-    /// `environment_texels` is the number of texels of the environment map, all levels.
+    /// `environment_texels` is the number of texels of the environment map, all levels. Blades of wipers move for `shutter_s` seconds,
+    /// half of them before the time of the pane.
     ///
     /// # Errors
     /// As [`WetPane::new`].
@@ -206,6 +232,7 @@ impl WetPane {
         grid: u32,
         lighting: &dyn Lighting,
         environment_texels: usize,
+        shutter_s: f64,
     ) -> Result<GlassPicture, PaneError> {
         let position = PanePosition::new(&self.pane, viewpoint)?;
         let binned = self.binned()?;
@@ -221,6 +248,7 @@ impl WetPane {
         let [columns, rows] = options.size;
         let hidden = (columns * self.above) as usize;
         let wet = self.state()?.traversal.get(hidden..).unwrap_or_default();
+        let (blades, blade_count) = self.blades(shutter_s);
         let lights = sources(lighting, camera.eye);
         let word = |bytes: &[u8]| {
             bytes.iter().enumerate().fold(0u32, |word, (k, &byte)| word | (u32::from(byte) << (8 * k)))
@@ -258,8 +286,10 @@ impl WetPane {
                 first_row: 0,
                 lights: lights.len() as u32,
                 lit_from: self.highlight_radius(),
-                unused: [0; 2],
+                blade_count,
+                unused: 0,
                 levels,
+                blades,
             },
             // A buffer has at least one element.
             drops: if binned.drops.is_empty() { vec![Default::default()] } else { binned.drops },

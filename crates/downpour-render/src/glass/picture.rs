@@ -1,15 +1,18 @@
 //! A picture through a pane of glass with water on it, ray by ray through the lens. Twin of
 //! `shaders/wgsl/render/glass_picture.wgsl`.
 
+use std::f32::consts::FRAC_1_SQRT_2;
+
 use downpour_drop::optics::{optics_fresnel, optics_fresnel_tatarchuk, optics_reflect, optics_refract};
 use downpour_shaders::render::glass::{
-    GLASS_PICTURE_APART, GLASS_PICTURE_FAR, GLASS_PICTURE_GLASS, GLASS_PICTURE_INDEX, GLASS_PICTURE_MIRROR,
-    GLASS_PICTURE_TATARCHUK,
+    GLASS_PICTURE_APART, GLASS_PICTURE_DIFFUSE, GLASS_PICTURE_FAR, GLASS_PICTURE_GLASS, GLASS_PICTURE_INDEX,
+    GLASS_PICTURE_MIRROR, GLASS_PICTURE_MOMENT, GLASS_PICTURE_TATARCHUK,
 };
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::GlassPicture;
+use super::blade::{glass_picture_blade_at, glass_picture_blade_part};
 use super::light::glass_picture_light_seen;
 use super::meet::PaneHit;
 
@@ -138,8 +141,42 @@ impl Look<'_> {
         sum
     }
 
-    /// A sample of a pixel: a position of the lens (in its radius) and of the pixel.
-    fn glass_picture_sample(&self, x: f32, y: f32, distance: f32, sample: [f32; 4]) -> Vec3 {
+    /// Radiance of a diffuse surface of the eye's side of a blade. `aside` is where its rounded face is turned, of length 1; `across` is
+    /// how far it is turned there, -1 to 1. What it sees of the room and of the scene is as much as a face of that slope sees.
+    fn glass_picture_diffuse(&self, aside: Vec2, across: f32) -> Vec3 {
+        let turned = 0.8 * across;
+        let upright = (1.0 - turned * turned).sqrt();
+        let outside = 0.5 - 0.5 * upright;
+        let to_room = self.glass_picture_world((aside * turned).extend(-upright));
+        let room = self.glass_picture_round(to_room, GLASS_PICTURE_DIFFUSE) * self.glass.frame.room;
+        let side = if turned > 0.0 { 1.0 } else { -1.0 };
+        let to_scene = self.glass_picture_world((aside * (side * FRAC_1_SQRT_2)).extend(FRAC_1_SQRT_2));
+        room * (1.0 - outside) + self.glass_picture_round(to_scene, GLASS_PICTURE_DIFFUSE) * outside
+    }
+
+    /// Radiance of the wipers along a ray that meets the pane at a position, in a direction of the pane, at a fraction of the exposure;
+    /// `None` where there is none.
+    fn glass_picture_wiper(&self, position: Vec2, d: Vec3, fraction: f32) -> Option<Vec3> {
+        let frame = &self.glass.frame;
+        for blade in frame.blades.iter().take(frame.blade_count as usize) {
+            let direction = glass_picture_blade_at(blade, fraction);
+            let part = glass_picture_blade_part(blade, direction, position);
+            if part.y > 0.0 {
+                let first = optics_fresnel(d.z, GLASS_PICTURE_INDEX);
+                let aside = Vec2::new(-direction.y, direction.x);
+                let mut sum = self.glass_picture_diffuse(aside, part.x) * (part.y * (1.0 - first));
+                if frame.room > 0.0 {
+                    let mirror = self.glass_picture_world(Vec3::new(d.x, d.y, -d.z));
+                    sum += self.glass_picture_round(mirror, GLASS_PICTURE_MIRROR) * (frame.room * first);
+                }
+                return Some(sum);
+            }
+        }
+        None
+    }
+
+    /// A sample of a pixel: a position of the lens (in its radius) and of the pixel, and a fraction of the exposure.
+    fn glass_picture_sample(&self, x: f32, y: f32, distance: f32, sample: [f32; 4], moment: f32) -> Vec3 {
         let frame = &self.glass.frame;
         let [lens_x, lens_y, dx, dy] = sample;
         let ray = frame.camera.camera_direction(x + dx, y + dy);
@@ -173,6 +210,9 @@ impl Look<'_> {
             let angle = pixel + apart * (1.0 / depth - 1.0 / far).abs();
             return self.glass_picture_seen(from_eye, direction, shift, angle);
         }
+        if let Some(seen) = self.glass_picture_wiper(position, d, moment) {
+            return seen;
+        }
         self.glass_picture_through(&Ray {
             position,
             d,
@@ -187,8 +227,9 @@ impl Look<'_> {
     fn glass_picture_pixel(&self, x: u32, y: u32) -> Vec3 {
         let distance = self.glass_picture_texel(0, x as i32, y as i32).w;
         let mut sum = Vec3::ZERO;
-        for &sample in &self.glass.lens {
-            sum += self.glass_picture_sample(x as f32, y as f32, distance, sample);
+        for (k, &sample) in self.glass.lens.iter().enumerate() {
+            let moment = ((k as f32 + 0.5) * GLASS_PICTURE_MOMENT).fract();
+            sum += self.glass_picture_sample(x as f32, y as f32, distance, sample, moment);
         }
         sum / self.glass.lens.len() as f32
     }
