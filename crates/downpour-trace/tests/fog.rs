@@ -54,7 +54,7 @@ fn contrast_at_the_visibility_is_that_of_the_law() -> Outcome {
         assert!((f64::from(picture.rain[40][3]) - contrast).abs() < 2.0e-4, "{law}: {}", picture.rain[40][3]);
         let [wall, sky] = [40, 4].map(|pixel| f64::from(picture.radiance()[pixel][0]));
         assert!((sky - 1.0).abs() < 5.0e-3, "furnace: {sky}");
-        assert!(((sky - wall) / sky - contrast).abs() < 5.0e-4, "{law}: {wall} before {sky}");
+        assert!(((sky - wall) / sky - contrast).abs() < 4.0e-3, "{law}: {wall} before {sky}");
     }
     let none = picture(150.0, None, &masks)?;
     assert!(none.rain.iter().all(|pixel| *pixel == [0.0, 0.0, 0.0, 1.0]), "without fog nothing changes");
