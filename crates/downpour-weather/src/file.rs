@@ -2,6 +2,7 @@
 
 use super::drips::{DripTable, Drips, DripsTable};
 use super::fault::Positions;
+use super::fog::FogTable;
 use super::glass::GlassTable;
 use super::glow::GlowTable;
 use super::keys::WeatherKeys;
@@ -47,6 +48,7 @@ pub(super) struct Tables {
     wind_field: WindFieldTable,
     streaks: StreaksTable,
     glass: Option<GlassTable>,
+    fog: Option<FogTable>,
     glow: GlowTable,
     puddle: Vec<PuddleTable>,
     wetness: WetnessTable,
@@ -107,6 +109,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         drips: Drips::checked(&tables.drips, &tables.drip),
         lightning: Lightning::checked(&tables.lightning, &tables.flash, rain.seed, &positions)?,
         glass: tables.glass.map(|glass| glass.checked(&heaviest, is_still, &positions)).transpose()?,
+        fog: tables.fog.map(|fog| fog.checked(&positions)).transpose()?,
         glow: tables.glow.checked(),
         rain,
         drop_model,

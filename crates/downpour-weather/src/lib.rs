@@ -26,6 +26,7 @@ mod camera;
 mod drips;
 mod fault;
 mod file;
+mod fog;
 mod glass;
 mod glow;
 mod keys;
@@ -57,6 +58,7 @@ pub use camera::{
 };
 pub use downpour_scene::uri::RelativePath;
 pub use drips::{DripPoint, Drips};
+pub use fog::{FOG_ASYMMETRY, Fog, VisibilityLaw};
 pub use glass::{Pane, PaneFocus, PaneFresnel, PaneShadow};
 pub use glow::{GLARE, Glow, GlowFilter};
 pub use keys::WeatherKeys;
@@ -151,6 +153,8 @@ pub struct Weather {
     pub streaks: Streaks,
     /// Pane in front of the camera.
     pub glass: Option<Pane>,
+    /// Fog.
+    pub fog: Option<Fog>,
     /// Light that goes beside its image.
     pub glow: Glow,
     /// Water on the ground, in the order of the file.
@@ -184,6 +188,7 @@ impl Default for Weather {
             wind_box: WindBox::default(),
             streaks: Streaks::default(),
             glass: None,
+            fog: None,
             glow: Glow::default(),
             puddles: Vec::new(),
             wetness: Wetness::default(),

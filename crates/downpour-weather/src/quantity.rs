@@ -50,6 +50,10 @@ ranges! {
     AttenuationM: 0.001, 1000.0, "0.001 to 1000 m";
     Fraction: 0.0, 1.0, "0 to 1";
     Fill: 0.0, 1.0, "\"rain\", or 0 to 1";
+    VisibilityM: 1.0, 1e6, "1 to 1e6 m";
+    ExtinctionPerM: 1e-6, 10.0, "1e-6 to 10 per m";
+    FogHeightM: 0.1, 1e5, "0.1 to 1e5 m";
+    FogAsymmetry: 0.0, 0.95, "0 to 0.95";
     GlowWidth: 0.1, 10.0, "0.1 to 10";
     DropSize: 0.05, 1.0, "0.05 to 1";
     ShortS: 0.01, 10.0, "0.01 to 10 s";

@@ -245,14 +245,15 @@ impl Shower {
             origin: stage.origin,
             pane: pane_plane(&self.weather, &stage.viewpoint)?,
         };
+        let with_fog = |medium: RainMedium| medium.with_fog(self.weather.fog.as_ref(), stage.origin.y);
         let Some(rates) = self.weather.keys.rate() else {
-            return Ok(RainMedium::new(&self.law, resolved, masks, &options)?);
+            return Ok(with_fog(RainMedium::new(&self.law, resolved, masks, &options)?));
         };
         // The drops about the eye pass the height of the rate at another time.
         let above = stage.view()?.eye.y - self.weather.rain.rate_height_m;
         let passing_s = time_s + above / fall_speed(&self.law).max(0.1);
         let rain = Rain { rate_mm_h: rates.at(passing_s), ..self.weather.rain };
-        Ok(RainMedium::new(&rain.sizes()?, resolved, masks, &options)?)
+        Ok(with_fog(RainMedium::new(&rain.sizes()?, resolved, masks, &options)?))
     }
 
     /// The rate, mm/h, of the drops about the eye (in closed form) or in the simulated volume, with those that something

@@ -44,6 +44,8 @@ shared_constants! {
         MEDIUM_SKY_REACH: f32 = 50.0;
         /// Beyond this distance, m, is the sky.
         MEDIUM_SKY: f32 = 1.0e29;
+        /// Sunlight in fog is followed up to this distance, m.
+        MEDIUM_FOG_REACH: f32 = 1e5;
         /// Lamps light drops up to this distance, m.
         MEDIUM_LAMP_REACH: f32 = 1000.0;
         /// Intervals of the scattering angle.

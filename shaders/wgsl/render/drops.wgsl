@@ -315,8 +315,14 @@ fn drops_medium(x: u32, y: u32) -> vec3f {
     return streak_lookup_mean(medium_frame.shape, vec2f(f32(x) + 0.5, f32(y) + 0.5) / size);
 }
 
+// Mean radiance that fog scatters into a ray: the capture about the ray, over the solid angle of an even cone whose mean cosine is
+// the asymmetry of the phase function.
+fn drops_fog(direction: vec3f) -> vec3f {
+    return drops_capture_about(direction, direction, medium_frame.fog_phase.x) * medium_frame.fog.w;
+}
+
 // The rain over a pixel: radiance, and the transmittance of the scene behind it. Drops are in order of their nearest
-// points, with the medium between them.
+// points, with the medium and the fog between them.
 fn drops_over(x: u32, y: u32) -> vec4f {
     let edge = drops_tiles[0];
     let tile = (y / edge) * ((drops_frame.camera.width + edge - 1u) / edge) + x / edge;
@@ -334,11 +340,17 @@ fn drops_over(x: u32, y: u32) -> vec4f {
     if pair.y > 0.0 {
         shown_medium = drops_medium(x, y);
     }
+    var shown_fog = vec3f(0.0);
+    if medium_frame.fog.x > 0.0 {
+        shown_fog = drops_fog(direction);
+    }
     var radiance = vec3f(0.0);
     var transmittance = 1.0;
     var behind = true;
     // Transmittance of the medium up to here.
     var left = 1.0;
+    // That of the fog.
+    var clear = 1.0;
     for (var k = drops_tiles[1u + tile]; k < drops_tiles[2u + tile]; k += 1u) {
         let drop = drops_tiles[k];
         if drops_list[drop].nearest >= scene || transmittance < DROPS_OPAQUE {
@@ -354,7 +366,12 @@ fn drops_over(x: u32, y: u32) -> vec4f {
             behind = false;
         }
         let here = min(exp(-medium_depth(distance, span, 1.0) * thinned), left);
-        radiance += transmittance * (shown_medium * (left - here) + shown.rgb * here);
+        let seen = medium_fog(direction, distance);
+        // What a part of the way takes out, left * clear - here * seen, is shared by medium and fog.
+        let between = shown_medium * ((left - here) * (0.5 * (clear + seen)));
+        let fog = shown_fog * ((clear - seen) * (0.5 * (left + here)));
+        radiance += transmittance * (between + fog + shown.rgb * (here * seen));
+        clear = seen;
         transmittance *= 1.0 - shown.w;
         left = here;
     }
@@ -362,8 +379,10 @@ fn drops_over(x: u32, y: u32) -> vec4f {
         radiance += lamps.rgb * transmittance;
     }
     let last = min(exp(-pair.y), left);
-    radiance += shown_medium * (transmittance * (left - last));
-    return vec4f(radiance, transmittance * last);
+    let whole = medium_fog(direction, scene);
+    radiance += shown_medium * (transmittance * (left - last) * (0.5 * (clear + whole)));
+    radiance += shown_fog * (transmittance * (clear - whole) * (0.5 * (left + last)));
+    return vec4f(radiance, transmittance * last * whole);
 }
 
 @compute @workgroup_size(8, 8, 1)

@@ -31,6 +31,10 @@ struct MediumFrame {
     shape: u32,
     // A pane before the eye, which keeps rain off this side of it: unit normal away from the eye, and its distance; 0: none.
     pane: vec4f,
+    // Fog: extinction at its base, 1/m; inverse of its height, 1/m (0: the same everywhere); height of the eye above its base, m; albedo.
+    fog: vec4f,
+    // Fog: width of its phase function, radians; the rest is unused.
+    fog_phase: vec4f,
 }
 
 @group(0) @binding(9) var<uniform> medium_frame: MediumFrame;
@@ -113,6 +117,37 @@ fn medium_region(origin: vec3f, direction: vec3f) -> vec2f {
         return medium_both(up, medium_roots(across, dot(offset.xz, direction.xz), outside));
     }
     return whole;
+}
+
+// Optical depth of fog (as in MediumFrame) along a ray whose direction has the upward part `rise`, up to a distance: the integral of
+// sigma exp(-max(height, 0) / scale height), in closed form.
+fn medium_fog_depth(fog: vec4f, rise: f32, distance: f32) -> f32 {
+    let begin = fog.z;
+    let end = fog.z + rise * distance;
+    let low = min(begin, end);
+    let high = max(begin, end);
+    if high <= 0.0 || fog.y <= 0.0 {
+        return fog.x * distance;
+    }
+    var below = 0.0;
+    var above = distance;
+    if low < 0.0 {
+        below = distance * (-low / (high - low));
+        above = distance * (high / (high - low));
+    }
+    let foot = max(low, 0.0);
+    let x = (high - foot) * fog.y;
+    // (1 - exp(-x)) / x, by its series where the difference would lose digits.
+    var mean = 1.0 - x * (0.5 - x / 6.0);
+    if x > 0.02 {
+        mean = (1.0 - exp(-x)) / x;
+    }
+    return fog.x * (below + above * exp(-foot * fog.y) * mean);
+}
+
+// Part of the light that fog lets through up to a distance along a ray of unit direction from the eye.
+fn medium_fog(direction: vec3f, distance: f32) -> f32 {
+    return exp(-medium_fog_depth(medium_frame.fog, direction.y, min(distance, MEDIUM_FAR)));
 }
 
 // Distance at which a ray from the eye comes through the pane.

@@ -8,15 +8,16 @@
 // Twin: downpour_render::rain::medium::light.
 
 @group(0) @binding(6) var<storage, read> medium_clean: array<vec4f>;
-// Integral of the phase function over the scattering angle, from 0 to each multiple of pi / MEDIUM_ANGLES.
+// Integral of the phase functions of drops (by color) and of fog over the scattering angle, from 0 to each multiple of
+// pi / MEDIUM_ANGLES.
 @group(0) @binding(7) var<storage, read> medium_phase: array<vec4f>;
 
 // The integral of the phase function up to an angle.
-fn medium_light_phase(angle: f32) -> vec3f {
+fn medium_light_phase(angle: f32) -> vec4f {
     let position = clamp(angle * (f32(MEDIUM_ANGLES) / 3.1415927), 0.0, f32(MEDIUM_ANGLES));
     let low = min(u32(position), MEDIUM_ANGLES - 1u);
     let part = position - f32(low);
-    return (medium_phase[low] * (1.0 - part) + medium_phase[low + 1u] * part).rgb;
+    return (medium_phase[low] * (1.0 - part) + medium_phase[low + 1u] * part);
 }
 
 // The part of a ray that a lamp lights: within its cone and its range.
@@ -69,6 +70,8 @@ struct MediumLight {
     rest: f32,
     // Light of the part of the ray that was drawn.
     drawn: vec3f,
+    // Part of it that fog scatters, which no roof keeps off, 0 to 1.
+    foggy: f32,
     // Sum of distances, weighted by light.
     weighted: f32,
     // First and last distance of the part that was drawn.
@@ -78,7 +81,8 @@ struct MediumLight {
 }
 
 // Adds a part of a ray, from one distance to another, that would give `light`; draws it by what it gives.
-fn medium_light_add(sum: MediumLight, light: vec3f, lamp: u32, near: f32, far: f32) -> MediumLight {
+fn medium_light_add(sum: MediumLight, rain: vec3f, fog: vec3f, lamp: u32, near: f32, far: f32) -> MediumLight {
+    let light = rain + fog;
     let fraction = light_weight(light);
     if fraction <= 0.0 {
         return sum;
@@ -91,6 +95,7 @@ fn medium_light_add(sum: MediumLight, light: vec3f, lamp: u32, near: f32, far: f
         // The part of the interval that is left is as good as a new number.
         next.rest = sum.rest / chance;
         next.drawn = light;
+        next.foggy = light_weight(fog) / fraction;
         next.part = vec2f(near, far);
         next.lamp = lamp;
     } else {
@@ -105,6 +110,8 @@ fn medium_light_lamp(sum: MediumLight, index: u32, direction: vec3f, reach: vec2
     let lamp = light_load(index);
     let parallel = lamp.kind == SCENE_LIGHT_DIRECTIONAL;
     let lit = medium_light_span(lamp, eye, direction, select(reach.y, reach.x, parallel));
+    // The sky is as it is seen through rain, but not as it is seen through fog.
+    let rain_reach = select(MEDIUM_FAR, MEDIUM_SKY_REACH, parallel);
     if lit.y <= lit.x {
         return sum;
     }
@@ -120,7 +127,8 @@ fn medium_light_lamp(sum: MediumLight, index: u32, direction: vec3f, reach: vec2
     let first = atan2(h, nearest - lit.x);
     var next = sum;
     var near = lit.x;
-    var near_depth = medium_depth(near, region, outline);
+    var near_depth = medium_depth(min(near, rain_reach), region, outline);
+    var near_fog = medium_fog_depth(medium_frame.fog, direction.y, near);
     var near_angle = first;
     var near_phase = medium_light_phase(first);
     for (var part = 0u; part < MEDIUM_PARTS && near < lit.y; part += 1u) {
@@ -129,12 +137,15 @@ fn medium_light_lamp(sum: MediumLight, index: u32, direction: vec3f, reach: vec2
         let turned = near_angle + MEDIUM_TURN;
         let turn = select(nearest - h * cos(turned) / max(sin(turned), 1.0e-6), MEDIUM_FAR, parallel || turned > 3.1);
         let far = select(min(min(slice, max(turn, near * 1.001)), lit.y), lit.y, part + 1u == MEDIUM_PARTS);
-        let far_depth = medium_depth(far, region, outline);
+        let far_depth = medium_depth(min(far, rain_reach), region, outline);
+        let far_fog = medium_fog_depth(medium_frame.fog, direction.y, far);
         let far_angle = atan2(h, nearest - far);
         let far_phase = medium_light_phase(far_angle);
         let middle = nearest - h * cos(0.5 * (near_angle + far_angle)) / max(sin(0.5 * (near_angle + far_angle)), 1.0e-6);
         let light = light_sample(lamp, eye + direction * clamp(middle, near, far), 0.0);
         var given = light.irradiance * 3.1415927;
+        var foggy = given * medium_frame.fog.w;
+        let through_fog = exp(-0.5 * (near_fog + far_fog));
         if parallel {
             // Half an interval of the table to each side.
             let toward = drop_glint_angle(light.direction, direction) * 3.1415927;
@@ -142,15 +153,20 @@ fn medium_light_lamp(sum: MediumLight, index: u32, direction: vec3f, reach: vec2
             let low = max(toward - 0.5 * width, 0.0);
             let high = min(toward + 0.5 * width, 3.1415927);
             let phase = (medium_light_phase(high) - medium_light_phase(low)) / (high - low);
-            given *= phase * (exp(-near_depth) - exp(-far_depth));
+            given *= phase.rgb * (exp(-near_depth) - exp(-far_depth)) * through_fog;
+            foggy *= phase.w * (exp(-near_fog) - exp(-far_fog)) * exp(-0.5 * (near_depth + far_depth));
         } else {
             let square = max(light.distance * light.distance, 1.0e-8);
             let density = (far_depth - near_depth) / max(far - near, 1.0e-6);
-            given *= (far_phase - near_phase) * (square / h * density * exp(-0.5 * (near_depth + far_depth)));
+            let passed = exp(-0.5 * (near_depth + far_depth)) * through_fog;
+            given *= (far_phase - near_phase).rgb * (square / h * density * passed);
+            let fog_density = (far_fog - near_fog) / max(far - near, 1.0e-6);
+            foggy *= (far_phase - near_phase).w * (square / h * fog_density * passed);
         }
-        next = medium_light_add(next, max(given, vec3f(0.0)), index, near, far);
+        next = medium_light_add(next, max(given, vec3f(0.0)), max(foggy, vec3f(0.0)), index, near, far);
         near = far;
         near_depth = far_depth;
+        near_fog = far_fog;
         near_angle = far_angle;
         near_phase = far_phase;
     }
@@ -166,12 +182,13 @@ fn medium_light_pixel(x: u32, y: u32) {
     // The sky is as it is seen through the rain beyond.
     let end = select(scene, MEDIUM_SKY_REACH, scene >= MEDIUM_SKY);
     let depth = medium_open_at(position.x, position.y, end).x;
-    var sum = MediumLight(vec3f(0.0), 0.0, vec3f(0.0), 0.0, vec2f(0.0), 0u);
+    var sum = MediumLight(vec3f(0.0), 0.0, vec3f(0.0), 0.0, 0.0, vec2f(0.0), 0u);
     var seen = vec3f(0.0);
-    if medium_frame.lit != MEDIUM_DARK && medium_frame.all > 0.0 {
+    if medium_frame.lit != MEDIUM_DARK && (medium_frame.all > 0.0 || medium_frame.fog.x > 0.0) {
         let random = path_lattice_words(x, y, MEDIUM_LATTICE);
         sum.rest = rng_unit(random.x);
-        let reach = vec2f(min(scene, MEDIUM_SKY_REACH), min(scene, MEDIUM_LAMP_REACH));
+        let sun_reach = select(MEDIUM_SKY_REACH, MEDIUM_FOG_REACH, medium_frame.fog.x > 0.0);
+        let reach = vec2f(min(scene, sun_reach), min(scene, MEDIUM_LAMP_REACH));
         for (var k = 0u; k < render_frame.light_count; k += 1u) {
             sum = medium_light_lamp(sum, k, direction, reach, render_frame.camera.pixel_angle);
         }
@@ -181,7 +198,7 @@ fn medium_light_pixel(x: u32, y: u32) {
             let from_position = medium_frame.eye + direction * distance;
             let light = light_sample(light_load(sum.lamp), from_position, 0.0);
             seen = scene_visibility(from_position, light.direction, light.distance)
-                * medium_open_at(position.x, position.y, distance).y
+                * mix(medium_open_at(position.x, position.y, distance).y, 1.0, sum.foggy)
                 * (sum.drawn * (light_weight(sum.whole) / fraction));
         }
     }

@@ -10,13 +10,16 @@ use downpour_render::gpu::RainPipeline;
 use downpour_render::picture::compose_pixel;
 use downpour_render::rain::drops_mask::drops_mask_right;
 use downpour_render::rain::light::{DropLightForm, DropLightOptions};
+use downpour_render::rain::medium::fog::medium_fog_depth;
 use downpour_render::rain::streak::streak_weight;
 use downpour_render::rain::streak_cell::{streak_cell_index, streak_cell_position};
 use downpour_render::rain::{
     DropMasks, EnvironmentMap, Exposure, EyeMotion, MediumOptions, PanePlane, Rain, RainMedium, RainOptions,
     RefractionForm, StreakColor, StreakProfiles, StreakSamples, TemporalResponse,
 };
-use downpour_shaders::render::medium::{MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL};
+use downpour_shaders::render::medium::{
+    MEDIUM, MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL,
+};
 use downpour_shaders::render::rain::{
     COMPOSE, COMPOSE_KERNEL, DROPS_KERNEL, DROPS_MASK, STREAK, STREAK_CELL, STREAK_LIGHT_KERNEL, STREAK_RAYS,
     STREAK_RAYS_KERNEL, STREAK_TABLE_KERNEL,
@@ -28,7 +31,8 @@ use downpour_trace::capture::trace_environment;
 use downpour_trace::data::{RenderFrame, SceneData};
 use downpour_trace::gpu::ScenePipeline;
 use downpour_trace::scene::SceneView;
-use glam::{DVec3, Vec3};
+use downpour_weather::Fog;
+use glam::{DVec3, Vec3, Vec4};
 
 use super::drop_light::atlas;
 use super::scene::scene;
@@ -109,7 +113,10 @@ fn medium(masks: &DropMasks, eye: Vec3) -> RainMedium {
     let pane = Some(PanePlane { outward: Vec3::new(0.0, 0.28, -0.96), distance: 0.7 });
     let velocity = Vec3::new(1.0, -4.0, 0.5);
     let options = MediumOptions { velocity, pane, ..MediumOptions::default() };
-    RainMedium::new(&rain, &resolved, masks, &options).expect("a medium")
+    let made = RainMedium::new(&rain, &resolved, masks, &options).expect("a medium");
+    let fog = Fog { extinction_per_m: 0.05, height_m: Some(2.0), base_m: 0.0, asymmetry: 0.8, albedo: 0.9 };
+    // One of the two placements has fog.
+    made.with_fog((eye == ABOVE[0]).then_some(&fog), 0.0)
 }
 
 /// Part of a picture that is compared.
@@ -389,6 +396,20 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &[Uniform(0.0, 4.0); 8],
             Tol::relative(2.0e-7, 0.0, "a product and a sum of positive numbers, which may be fused"),
             |a| compose_pixel(a.f32s(), a.f32s()).words(),
+        ),
+        FunctionCase::new(
+            "medium_fog_depth",
+            &MEDIUM,
+            &[
+                Uniform(0.0, 0.1),
+                Uniform(0.0, 2.0),
+                Uniform(-5.0, 30.0),
+                Uniform(0.0, 1.0),
+                Uniform(-1.0, 1.0),
+                Uniform(0.0, 500.0),
+            ],
+            Tol::relative(1.0e-4, 1.0e-6, "exponentials, and their difference from 1 from 0.02 on (5e-5)"),
+            |a| medium_fog_depth(Vec4::from_array(a.f32s()), a.f32(), a.f32()).words(),
         ),
         FunctionCase::new(
             "streak_weight",

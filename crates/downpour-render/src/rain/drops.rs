@@ -373,8 +373,15 @@ impl Buffers<'_> {
         self.table.streak_lookup_mean(self.rain.medium.shape, position)
     }
 
+    /// Mean radiance that fog scatters into a ray: the capture about the ray, over the solid angle of an even cone whose mean cosine
+    /// is the asymmetry of the phase function.
+    fn drops_fog(&self, direction: Vec3) -> Vec3 {
+        let medium = &self.rain.medium;
+        self.view.drops_capture_about(direction, direction, medium.fog_phase[0]) * medium.fog[3]
+    }
+
     /// The rain over a pixel: radiance, and the transmittance of the scene behind it. Drops are in order of their nearest
-    /// points, with the medium between them.
+    /// points, with the medium and the fog between them.
     fn drops_over(&self, x: u32, y: u32) -> Vec4 {
         let (frame, medium) = (self.view.frame, &self.rain.medium);
         let index = (y * frame.camera.width + x) as usize;
@@ -389,10 +396,13 @@ impl Buffers<'_> {
         // Air that rain does not reach thins the medium; evenly, as far as drops between it go.
         let thinned = depth / medium.medium_depth(end, span, 1.0).max(1.0e-12);
         let shown_medium = if depth > 0.0 { self.drops_medium(x, y) } else { Vec3::ZERO };
+        let shown_fog = if medium.fog[0] > 0.0 { self.drops_fog(direction) } else { Vec3::ZERO };
         let (mut radiance, mut transmittance) = (Vec3::ZERO, 1.0);
         let mut behind = true;
         // Transmittance of the medium up to here.
         let mut left = 1.0f32;
+        // That of the fog.
+        let mut clear = 1.0f32;
         for &index in self.tiles.of_pixel(x, y) {
             let drop = &self.rain.list[index as usize];
             if drop.nearest >= scene || transmittance < DROPS_OPAQUE {
@@ -408,7 +418,12 @@ impl Buffers<'_> {
                 behind = false;
             }
             let here = ops::exp(-medium.medium_depth(distance, span, 1.0) * thinned).min(left);
-            radiance += transmittance * (shown_medium * (left - here) + shown.truncate() * here);
+            let seen = medium.medium_fog(direction, distance);
+            // What a part of the way takes out, left * clear - here * seen, is shared by medium and fog.
+            let between = shown_medium * ((left - here) * (0.5 * (clear + seen)));
+            let fog = shown_fog * ((clear - seen) * (0.5 * (left + here)));
+            radiance += transmittance * (between + fog + shown.truncate() * (here * seen));
+            clear = seen;
             transmittance *= 1.0 - shown.w;
             left = here;
         }
@@ -416,8 +431,10 @@ impl Buffers<'_> {
             radiance += lamps * transmittance;
         }
         let last = ops::exp(-depth).min(left);
-        radiance += shown_medium * (transmittance * (left - last));
-        radiance.extend(transmittance * last)
+        let whole = medium.medium_fog(direction, scene);
+        radiance += shown_medium * (transmittance * (left - last) * (0.5 * (clear + whole)));
+        radiance += shown_fog * (transmittance * (clear - whole) * (0.5 * (left + last)));
+        radiance.extend(transmittance * last * whole)
     }
 }
 

@@ -13,6 +13,7 @@
 //! A sky map is taken to be the sky as it is seen through the rain beyond 50 m.
 
 pub(super) mod filter;
+pub mod fog;
 mod frame;
 mod light;
 mod open;
@@ -23,6 +24,7 @@ use downpour_math::ops::f64 as ops;
 use downpour_shaders::render::medium::{MEDIUM_NEAR, MEDIUM_QUARTERS, MEDIUM_SKY_REACH};
 use downpour_shaders::render::rain::PROJECT_NO_CLASS;
 use downpour_sim::resolved::{Region, Resolved};
+use downpour_weather::Fog;
 use glam::{DVec3, Vec3};
 
 use super::DropMasks;
@@ -99,6 +101,8 @@ pub struct RainMedium {
     /// Rate of the sizes that are nowhere drawn, mm/h.
     rate_mm_h: f64,
     pane: Option<PanePlane>,
+    /// Fog, its base relative to the scene's origin.
+    fog: Option<Fog>,
 }
 
 impl RainMedium {
@@ -158,6 +162,7 @@ impl RainMedium {
             mean_diameter_m: diameters / all,
             rate_mm_h,
             pane: options.pane,
+            fog: None,
         };
         Ok(made.with_velocity(options.velocity))
     }

@@ -44,6 +44,11 @@ pub struct MediumFrame {
     pub shape: u32,
     /// A pane before the eye, which keeps rain off this side of it: unit normal away from the eye, and its distance, m; 0: none.
     pub pane: [f32; 4],
+    /// Fog: extinction at its base, 1/m; inverse of its height, 1/m (0: the same everywhere); height of the eye above its base, m;
+    /// albedo.
+    pub fog: [f32; 4],
+    /// Fog: width of its phase function, radians; its asymmetry; the rest is unused.
+    pub fog_phase: [f32; 4],
 }
 
 impl MediumFrame {
@@ -60,6 +65,7 @@ impl MediumFrame {
             }
             _ => (MEDIUM_EVERYWHERE, glam::DVec3::ZERO, glam::DVec3::ONE),
         };
+        let [fog, fog_phase] = medium.fog.map_or([[0.0; 4]; 2], |fog| super::fog::uniforms(&fog, eye.y));
         let rows = (f64::from(MEDIUM_COLUMNS) * f64::from(height) / f64::from(width.max(1))).round();
         Self {
             depths,
@@ -76,6 +82,8 @@ impl MediumFrame {
             lit: 0,
             shape: project_class(medium.row),
             pane: medium.pane.map_or([0.0; 4], |pane| pane.outward.extend(pane.distance).into()),
+            fog,
+            fog_phase,
         }
     }
 

@@ -7,13 +7,15 @@ use downpour_math::ops;
 use downpour_math::rng::rng_unit;
 use downpour_shaders::render::drop_light::DROP_LIGHT_ENTRIES;
 use downpour_shaders::render::medium::{
-    MEDIUM_ANGLES, MEDIUM_DARK, MEDIUM_FAR, MEDIUM_LAMP_REACH, MEDIUM_LAMPS, MEDIUM_LATTICE, MEDIUM_NEAR,
-    MEDIUM_PARTS, MEDIUM_SKY, MEDIUM_SKY_REACH, MEDIUM_SLICES, MEDIUM_SPOTS, MEDIUM_TURN,
+    MEDIUM_ANGLES, MEDIUM_DARK, MEDIUM_FAR, MEDIUM_FOG_REACH, MEDIUM_LAMP_REACH, MEDIUM_LAMPS,
+    MEDIUM_LATTICE, MEDIUM_NEAR, MEDIUM_PARTS, MEDIUM_SKY, MEDIUM_SKY_REACH, MEDIUM_SLICES, MEDIUM_SPOTS,
+    MEDIUM_TURN,
 };
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::MediumFrame;
+use super::fog::{medium_fog_depth, phase_integral};
 use super::frame::{medium_both, medium_node, medium_roots};
 use crate::camera::Camera;
 use crate::light::{Light, light_weight};
@@ -30,7 +32,7 @@ pub struct MediumLight<'a> {
     pub(crate) lighting: &'a dyn Lighting,
     pub(crate) camera: Camera,
     pub(crate) medium: MediumFrame,
-    /// Integral of the phase function over the scattering angle, from 0 to each multiple of pi / 256.
+    /// Integral of the phase functions of drops (by color) and of fog over the scattering angle, from 0 to each multiple of pi / 256.
     pub(crate) phase: Vec<[f32; 4]>,
 }
 
@@ -43,6 +45,8 @@ struct Found {
     rest: f32,
     /// Light of the part of the ray that was drawn.
     drawn: Vec3,
+    /// Part of it that fog scatters, which no roof keeps off, 0 to 1.
+    foggy: f32,
     /// Sum of distances, weighted by light.
     weighted: f32,
     /// First and last distance of the part that was drawn.
@@ -63,9 +67,10 @@ pub(in crate::rain) fn lamps_of(form: DropLightForm) -> u32 {
 /// Integral of a drop's phase function over the scattering angle: row k up to the angle k pi / 256.
 ///
 /// [`DropLightForm::Rousseau2006`] depends on the vertical, too; lamps are taken to be as high as the eye.
-fn phase(form: DropLightForm, table: &DropLightTable) -> Vec<[f32; 4]> {
+fn phase(form: DropLightForm, table: &DropLightTable, asymmetry: f64) -> Vec<[f32; 4]> {
     let width = std::f64::consts::PI / f64::from(MEDIUM_ANGLES);
     let mut sum = [0.0f64; 3];
+    let mut fog = 0.0;
     let mut rows = vec![[0.0; 4]];
     for (k, row) in (0..MEDIUM_ANGLES).zip(table.rows()) {
         let of_formula = |value: f32| [f64::from(value); 3];
@@ -84,8 +89,9 @@ fn phase(form: DropLightForm, table: &DropLightTable) -> Vec<[f32; 4]> {
         for (sum, value) in sum.iter_mut().zip(values) {
             *sum += value * width;
         }
+        fog += phase_integral(asymmetry, k);
         let [r, g, b] = sum.map(|sum| sum as f32);
-        rows.push([r, g, b, 0.0]);
+        rows.push([r, g, b, fog as f32]);
     }
     rows
 }
@@ -100,7 +106,8 @@ impl<'a> MediumLight<'a> {
     ) -> Self {
         let open = u32::from(lights.lighting.is_open());
         let medium = MediumFrame { open, ..*medium };
-        Self { lighting: lights.lighting, camera: *camera, medium, phase: phase(form, lights.table) }
+        let phase = phase(form, lights.table, medium.fog_phase[1].into());
+        Self { lighting: lights.lighting, camera: *camera, medium, phase }
     }
 
     /// Rows of the grid of open air, before those of the pixels.
@@ -148,11 +155,11 @@ impl<'a> MediumLight<'a> {
     }
 
     /// The integral of the phase function up to an angle.
-    fn medium_light_phase(&self, angle: f32) -> Vec3 {
+    fn medium_light_phase(&self, angle: f32) -> Vec4 {
         let position = (angle * (MEDIUM_ANGLES as f32 / PI)).clamp(0.0, MEDIUM_ANGLES as f32);
         let low = (position as u32).min(MEDIUM_ANGLES - 1);
         let part = position - low as f32;
-        let at = |k: u32| Vec4::from(self.phase[k as usize]).truncate();
+        let at = |k: u32| Vec4::from(self.phase[k as usize]);
         at(low) * (1.0 - part) + at(low + 1) * part
     }
 
@@ -216,7 +223,11 @@ impl<'a> MediumLight<'a> {
         let at_angle = |angle: f32| nearest - h * ops::cos(angle) / ops::sin(angle).max(1.0e-6);
         let mut next = sum;
         let mut near = lit.x;
-        let mut near_depth = medium.medium_depth(near, region, outline);
+        // The sky is as it is seen through rain, but not as it is seen through fog.
+        let rain_reach = if parallel { MEDIUM_SKY_REACH } else { MEDIUM_FAR };
+        let fog_depth = |distance| medium_fog_depth(medium.fog.into(), direction.y, distance);
+        let mut near_depth = medium.medium_depth(near.min(rain_reach), region, outline);
+        let mut near_fog = fog_depth(near);
         let mut near_angle = first;
         let mut near_phase = self.medium_light_phase(first);
         for part in 0..MEDIUM_PARTS {
@@ -229,26 +240,35 @@ impl<'a> MediumLight<'a> {
             let turn = if parallel || turned > 3.1 { MEDIUM_FAR } else { at_angle(turned) };
             let ends = part + 1 == MEDIUM_PARTS;
             let far = if ends { lit.y } else { slice.min(turn.max(near * 1.001)).min(lit.y) };
-            let far_depth = medium.medium_depth(far, region, outline);
+            let far_depth = medium.medium_depth(far.min(rain_reach), region, outline);
+            let far_fog = fog_depth(far);
             let far_angle = ops::atan2(h, nearest - far);
             let far_phase = self.medium_light_phase(far_angle);
             let middle = at_angle(0.5 * (near_angle + far_angle));
             let light = lamp.light_sample(eye + direction * middle.clamp(near, far), 0.0);
             let mut given = light.irradiance * PI;
+            let mut foggy = given * medium.fog[3];
+            let through_fog = ops::exp(-0.5 * (near_fog + far_fog));
             if parallel {
                 let toward = drop_glint_angle(light.direction, direction) * PI;
                 let width = PI / MEDIUM_ANGLES as f32;
                 let low = (toward - 0.5 * width).max(0.0);
                 let high = (toward + 0.5 * width).min(PI);
                 let phase = (self.medium_light_phase(high) - self.medium_light_phase(low)) / (high - low);
-                given *= phase * (ops::exp(-near_depth) - ops::exp(-far_depth));
+                given *= phase.truncate() * (ops::exp(-near_depth) - ops::exp(-far_depth)) * through_fog;
+                let passed = ops::exp(-0.5 * (near_depth + far_depth));
+                foggy *= phase.w * (ops::exp(-near_fog) - ops::exp(-far_fog)) * passed;
             } else {
                 let square = (light.distance * light.distance).max(1.0e-8);
                 let density = (far_depth - near_depth) / (far - near).max(1.0e-6);
-                let passed = ops::exp(-0.5 * (near_depth + far_depth));
-                given *= (far_phase - near_phase) * (square / h * density * passed);
+                let passed = ops::exp(-0.5 * (near_depth + far_depth)) * through_fog;
+                given *= (far_phase - near_phase).truncate() * (square / h * density * passed);
+                let fog_density = (far_fog - near_fog) / (far - near).max(1.0e-6);
+                foggy *= (far_phase - near_phase).w * (square / h * fog_density * passed);
             }
-            next = medium_light_add(next, given.max(Vec3::ZERO), index, near, far);
+            let both = [given.max(Vec3::ZERO), foggy.max(Vec3::ZERO)];
+            next = medium_light_add(next, both, index, near, far);
+            near_fog = far_fog;
             (near, near_depth, near_angle, near_phase) = (far, far_depth, far_angle, far_phase);
         }
         next
@@ -264,10 +284,11 @@ impl<'a> MediumLight<'a> {
         let depth = self.medium_open_at(grid, position.x, position.y, end).x;
         let mut sum = Found::default();
         let mut seen = Vec3::ZERO;
-        if medium.lit != MEDIUM_DARK && medium.all > 0.0 {
+        if medium.lit != MEDIUM_DARK && (medium.all > 0.0 || medium.fog[0] > 0.0) {
             let random = path_lattice_words(camera.seed, x, y, MEDIUM_LATTICE);
             sum.rest = rng_unit(random[0]);
-            let reach = Vec2::new(scene.min(MEDIUM_SKY_REACH), scene.min(MEDIUM_LAMP_REACH));
+            let sun_reach = if medium.fog[0] > 0.0 { MEDIUM_FOG_REACH } else { MEDIUM_SKY_REACH };
+            let reach = Vec2::new(scene.min(sun_reach), scene.min(MEDIUM_LAMP_REACH));
             for k in 0..self.lighting.light_count() {
                 sum = self.medium_light_lamp(sum, k, direction, reach, camera.pixel_angle);
             }
@@ -276,8 +297,9 @@ impl<'a> MediumLight<'a> {
                 let distance = sum.part.x + (sum.part.y - sum.part.x) * rng_unit(random[1]);
                 let from = Vec3::from(medium.eye) + direction * distance;
                 let light = self.lighting.light(sum.lamp).light_sample(from, 0.0);
+                let open = self.medium_open_at(grid, position.x, position.y, distance).y;
                 seen = self.lighting.visibility(from, light.direction, light.distance)
-                    * self.medium_open_at(grid, position.x, position.y, distance).y
+                    * (open * (1.0 - sum.foggy) + sum.foggy)
                     * (sum.drawn * (light_weight(sum.whole) / fraction));
             }
         }
@@ -287,7 +309,8 @@ impl<'a> MediumLight<'a> {
 }
 
 /// Adds a part of a ray, from one distance to another, that would give `light`; draws it by what it gives.
-fn medium_light_add(sum: Found, light: Vec3, lamp: u32, near: f32, far: f32) -> Found {
+fn medium_light_add(sum: Found, [rain, fog]: [Vec3; 2], lamp: u32, near: f32, far: f32) -> Found {
+    let light = rain + fog;
     let fraction = light_weight(light);
     if fraction <= 0.0 {
         return sum;
@@ -299,6 +322,7 @@ fn medium_light_add(sum: Found, light: Vec3, lamp: u32, near: f32, far: f32) -> 
     if sum.rest < chance {
         next.rest = sum.rest / chance;
         next.drawn = light;
+        next.foggy = light_weight(fog) / fraction;
         next.part = Vec2::new(near, far);
         next.lamp = lamp;
     } else {
