@@ -18,6 +18,7 @@ use downpour_trace::data::{RenderFrame, SceneData};
 use downpour_trace::picture::render_picture;
 use downpour_trace::scene::SceneView;
 use downpour_trace::sky_light::SkyLight;
+use downpour_weather::Fog;
 use glam::{Affine3A, DVec3, Vec3};
 
 type Outcome = Result<(), Box<dyn std::error::Error>>;
@@ -169,6 +170,8 @@ fn layer(
 ) -> Vec<[f32; 4]> {
     let options = RainOptions { medium, capture_size: 64, ..RainOptions::default() };
     let frame = RenderFrame::new(scene, seen, size, 1, 0, 3).expect("a frame");
+    // As in a picture: what is lit by lamps apart from its surroundings is not lit by their images.
+    let frame = RenderFrame { suns_out: 1, ..frame };
     let rain = Rain::new(&frame.camera, seen.eye.as_dvec3(), &[], masks, &options);
     let view = SceneView { data: scene, frame: &frame };
     let clean = view.picture();
@@ -434,4 +437,83 @@ fn all_of_the_rain_vanishes_in_even_light() -> Outcome {
         }
     }
     Ok(())
+}
+
+/// Phase function of Henyey & Greenstein 1941, 1/sr.
+fn henyey_greenstein(g: f64, cos: f64) -> f64 {
+    (1.0 - g * g) / (4.0 * PI * ops::pow(1.0 + g * g - 2.0 * g * cos, 1.5))
+}
+
+/// Directions of the pixels of a picture of 0.9 radians up and down.
+fn directions([width, height]: [u32; 2]) -> impl Iterator<Item = DVec3> {
+    let half = ops::tan(0.45);
+    let [w, h] = [width, height].map(|n| 0.5 * f64::from(n));
+    (0..width * height).map(move |i| {
+        let [u, v] = [(f64::from(i % width) + 0.5) / w - 1.0, 1.0 - (f64::from(i / width) + 0.5) / h];
+        DVec3::new(u * half * w / h, v * half, -1.0)
+    })
+}
+
+fn fog(extinction_per_m: f64, asymmetry: f64) -> RainMedium {
+    let fog = Fog { extinction_per_m, height_m: None, base_m: 0.0, asymmetry, albedo: 0.9 };
+    RainMedium::default().with_fog(Some(&fog), 0.0)
+}
+
+#[test]
+fn fog_scatters_lamps_as_single_scattering_says() {
+    let (sigma, distance, size) = (0.02, 30.0, [16u32, 12]);
+    for g in [0.0, 0.6, 0.85] {
+        for lamp in [DVec3::new(1.0, 2.0, -12.0), DVec3::new(-3.0, 0.5, -4.0), DVec3::new(0.7, 1.0, 2.0)] {
+            let position = lamp.as_vec3();
+            let light =
+                LightSource::Point { radius: 0.0, position, intensity: Vec3::splat(1000.0), range: 0.0 };
+            let scene = walled(distance as f32, &[light], [0.0; 3]);
+            let layer = layer(&scene, &view(0.9), size, fog(sigma, g), masks());
+            let (mut sum, mut of_truth) = (0.0, 0.0);
+            for (pixel, direction) in layer.iter().zip(directions(size)) {
+                let far = distance * direction.length();
+                let direction = direction.normalize();
+                let nearest = lamp.dot(direction);
+                let h = (lamp - direction * nearest).length();
+                let at = |s: f64| ops::atan((s - nearest) / h);
+                let expected = 900.0
+                    * integral(at(0.0), at(far), 400, |t| {
+                        let s = nearest + h * ops::tan(t);
+                        // Light that goes on as it came has come from straight ahead.
+                        let phase = henyey_greenstein(g, ops::cos(t + FRAC_PI_2));
+                        phase * sigma * ops::exp(-sigma * s) / h
+                    });
+                let found = f64::from(pixel[0]);
+                // Next to the lamp a pixel of 4 degrees is wide.
+                if lamp.normalize().dot(direction) < 0.99 {
+                    sum += found;
+                    of_truth += expected;
+                    assert!((found / expected - 1.0).abs() < 0.06, "{g}, {lamp}: {found}, not {expected}");
+                }
+            }
+            assert!((sum / of_truth - 1.0).abs() < 0.03, "{g}, {lamp}: {sum}, not {of_truth}");
+        }
+    }
+}
+
+/// Before a sky that fog hides a ray collects all of the sun's light that is scattered into it; before a wall that of the way there.
+#[test]
+fn fog_scatters_the_sun_as_single_scattering_says() {
+    let size = [16u32, 12];
+    for (g, travels) in [
+        (0.0, DVec3::new(0.3, -0.5, 0.4)),
+        (0.7, DVec3::new(-0.2, -0.6, -0.5)),
+        (0.7, DVec3::new(0.5, -0.3, 1.0)),
+    ] {
+        let travels = travels.normalize();
+        let light = LightSource::Directional { direction: travels.as_vec3(), irradiance: Vec3::splat(10.0) };
+        let scene = screened(400.0, 0.01, &[light], [0.0; 3]);
+        let layer = layer(&scene, &view(0.9), size, fog(0.01, g), masks());
+        for (pixel, direction) in layer.iter().zip(directions(size)) {
+            let expected = 9.0 * henyey_greenstein(g, -travels.dot(direction.normalize()));
+            let found = f64::from(pixel[0]);
+            assert!((found / expected - 1.0).abs() < 0.03, "{g}, {direction}: {found}, not {expected}");
+            assert!(pixel[3] < 1.0e-6, "the sky is hidden");
+        }
+    }
 }
