@@ -500,3 +500,26 @@ fn a_wind_drives_rain_against_a_window() -> Outcome {
     assert!(wind(-1)?.iter().all(|mass| *mass == 0));
     Ok(())
 }
+
+/// Before a key the pane is dry; once the rate is that of a rain without keys, drops are as many.
+#[test]
+fn a_rate_that_changes_wets_a_pane_when_it_rains() -> Outcome {
+    let water = |rate: &str, time_s: f64| -> Result<u64, Box<dyn std::error::Error>> {
+        let (weather, stage) = stage("before_s = 0\nsize_m = [0.1, 0.1]\nspeed_m_s = 8")?;
+        let keyed = Weather::parse(
+            "w.toml",
+            &format!(
+                "[rain]\nrate_mm_h = {rate}\n[camera]\nposition_m = [0, 1.5, 0]\nfov_deg = 14\n[output]\nsize = [96, 64]\n[glass]\nbefore_s = 0\nsize_m = [0.1, 0.1]\nspeed_m_s = 8"
+            ),
+        )?;
+        assert_eq!(weather.glass, keyed.glass);
+        let mut pane = WetPane::new(&keyed, &stage.viewpoint, 0.0)?.ok_or("no pane")?;
+        pane.advance(time_s)?;
+        Ok(pane.state()?.mass.iter().map(|&mass| u64::from(mass)).sum())
+    };
+    let keys = "[[0, 0], [2, 0], [2.001, 100], [9, 100]]";
+    assert_eq!(water(keys, 1.9)?, 0);
+    let (late, plain) = (water(keys, 4.0)?, water("100", 2.0)?);
+    assert!((late as f64 / plain as f64 - 1.0).abs() < 0.1, "{late}, not {plain}");
+    Ok(())
+}

@@ -13,6 +13,7 @@ use downpour_trace::puddle::{Ground, PuddleLook, PuddleMap, PuddleRows, Ripples}
 use downpour_trace::scene::SceneView;
 use downpour_trace::sky_light::SkyLight;
 use downpour_weather::{Loaded, Weather};
+use downpour_wind::Keyed;
 use glam::{Affine3A, Vec2, Vec3};
 
 type Outcome = Result<(), Box<dyn std::error::Error>>;
@@ -190,6 +191,28 @@ fn water_is_laid_anew() {
     assert_eq!((scene.table.len(), scene.puddles, scene.puddle_count), once);
     scene.set_puddles(&PuddleRows { puddles: &[], shape: (0, 0, 1.0), slopes: &[], shift: Vec3::ZERO });
     assert_eq!((scene.table.len(), scene.puddle_count), (dry, 0));
+}
+
+/// Ripples of a rain that ends: as those of the rain until it does, and then calm; those of a time do not depend on the frames before.
+#[test]
+fn ripples_follow_a_rate_that_changes() -> Outcome {
+    let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 40.0)?;
+    let rates = Keyed::new(vec![(0.0, 0.0), (1.0, 40.0), (5.0, 40.0), (5.001, 0.0)])?;
+    let at = |times: &[f64]| -> Result<Vec<[f32; 4]>, Box<dyn std::error::Error>> {
+        let mut ripples = Ripples::changing(&rain, &rates, 3, times[0])?;
+        times.iter().try_for_each(|&time| ripples.advance(time))?;
+        Ok(ripples.slopes())
+    };
+    let mut steady = Ripples::new(Some(&rain), 3, 4.5)?;
+    steady.advance(4.5)?;
+    // After 2.5 s a ripple has gone.
+    assert_eq!(at(&[4.5])?, steady.slopes());
+    assert_eq!(at(&[4.0, 4.2, 4.5])?, steady.slopes());
+    let power = |slopes: &[[f32; 4]]| slopes.last().map_or(0.0, |mean| mean[2]);
+    let (wet, dry) = (at(&[4.5])?, at(&[9.0])?);
+    assert!(power(&wet) > 1.0e-4 && power(&dry) < 1.0e-2 * power(&wet), "{} {}", power(&wet), power(&dry));
+    assert_eq!(power(&at(&[-1.0])?), 0.0);
+    Ok(())
 }
 
 /// Ripples at one time do not depend on the times before, and are of the size that gauges of ring waves have found.
