@@ -118,7 +118,7 @@ fn hosts() -> Vec<Host> {
         host!(GlowLevel as "GlowLevel" in &render::glow::GLOW,
             size, coarse, first, coarse_first, weight, coarse_weight, fraction, extinction, is_added, offset),
         host!(MediumFrame as "MediumFrame" in &render::medium::MEDIUM,
-            depths, rise, all, center, region, size, flatness, eye, open, columns, rows, lit, shape, pane),
+            depths, rise, all, center, region, size, flatness, eye, open, columns, rows, lit, shape, pane, fog, fog_phase),
         host!(DropsDrop as "DropsDrop" in &render::rain::STREAK,
             towards, distance, position, slope, half_extent, mask_index, area, grid, start, along, first, way, oval, depth_ratio,
             mode_phase, cycles, fraction, spread, nearest, kind, shape, profile, weights, reach, id),

@@ -1,5 +1,6 @@
 //! Wet glass before a scene: energy, lenses, focus, and the lattice that is stepped on.
 
+use downpour_math::ops::f64 as ops;
 use downpour_render::camera::Viewpoint;
 use downpour_render::glass::water::{
     glass_picture_water_cap, glass_picture_water_leave, glass_picture_water_normal, glass_picture_water_top,
@@ -243,7 +244,6 @@ fn blur_keeps_the_light() -> Outcome {
 /// Light of the image of a paraboloid source of integral 1 through a drop, as the sum over rings of the picture: a ray at
 /// an angle from the drop's axis meets glass and sphere, in a plane.
 fn shown(spread: f64, pane: f64, radius: f64) -> f64 {
-    use downpour_math::ops::f64 as ops;
     let (sphere, index) = (1.4 * radius, 1.333);
     let step = 1.0e-5;
     let ring = |k: u32| {
@@ -466,10 +466,10 @@ fn a_blade_is_opaque_where_it_stands_and_nowhere_else() -> Outcome {
         for (k, (seen, clear)) in seen.iter().zip(&clear).enumerate() {
             let (x, y) = (k % 96, k / 96);
             // Meters from the middle of the pane, which the picture's middle shows at 0.5 m; 7 degrees are 32 pixels.
-            let per_pixel = 0.5 * 7f64.to_radians().tan() / 32.0;
+            let per_pixel = 0.5 * ops::tan(7f64.to_radians()) / 32.0;
             let (right, up) = ((x as f64 + 0.5 - 48.0) * per_pixel, (32.0 - y as f64 - 0.5) * per_pixel);
             let (right, up) = (right, up + 0.09);
-            let (sin, cos) = degrees.to_radians().sin_cos();
+            let (sin, cos) = (ops::sin(degrees.to_radians()), ops::cos(degrees.to_radians()));
             let (along, aside) = (right * cos + up * sin, (up * cos - right * sin).abs());
             if (0.035..0.115).contains(&along) && aside < 0.003 {
                 assert!(seen[0] < 0.1 && seen[0] > 0.0, "{degrees}: {x}, {y}: {}", seen[0]);
