@@ -199,7 +199,10 @@ fn caught(
     let drops = field.in_box(low, low + DVec3::new(side, 12.0 * (end - begin), side), begin)?;
     let passes =
         |drop: &&FallingDrop| drop.position.y - height < -f64::from(drop.velocity[1]) * (end - begin);
-    let volumes = drops.iter().filter(passes).map(|drop| f64::from(drop.diameter).powi(3));
+    let volumes = drops
+        .iter()
+        .filter(passes)
+        .map(|drop| f64::from(drop.diameter * drop.diameter) * f64::from(drop.diameter));
     Ok(std::f64::consts::FRAC_PI_6 * volumes.sum::<f64>() / (side * side))
 }
 

@@ -89,7 +89,7 @@ fn wiper(random: [u32; 4]) -> Vec<u32> {
     let mut words = vec![0.2 + 0.02 * a, 0.4 + 0.02 * b, 0.05, 0.3];
     for k in 0u8..10 {
         let angle = 6.0 * c + 0.1 * d * f32::from(k);
-        words.extend([angle.cos(), -angle.sin()]);
+        words.extend([downpour_math::ops::cos(angle), -downpour_math::ops::sin(angle)]);
     }
     words.into_iter().map(f32::to_bits).collect()
 }

@@ -146,7 +146,7 @@ mod tests {
     fn a_blade_moves_while_the_shutter_is_open() {
         let blade = GlassPictureBlade::new(&upright(&[(0.0, 0.0), (1.0, 2.0)]), 0.5, 0.1, 0.0);
         for (fraction, angle) in [(0.0f32, 0.9f32), (0.25, 0.95), (0.5, 1.0), (1.0, 1.1)] {
-            let expected = Vec2::new(angle.cos(), -angle.sin());
+            let expected = Vec2::new(downpour_math::ops::cos(angle), -downpour_math::ops::sin(angle));
             let found = glass_picture_blade_at(&blade, fraction);
             assert!((found - expected).length() < 1.0e-4, "{fraction}: {found}, not {expected}");
         }
