@@ -133,7 +133,7 @@ fn hosts() -> Vec<Host> {
         host!(GlassPictureFrame as "GlassPictureFrame" in &render::glass::GLASS_PICTURE,
             camera, across, columns, down, rows, outward, bins, corner, cells,
             size, wet_size, lens, focus, fresnel, room, samples, last, capture_size, capture_last, capture_texel, film,
-            water, first_row, lights, lit_from, unused, levels),
+            water, first_row, lights, lit_from, blade_count, unused, levels, blades),
         host!(GlassPictureLight as "GlassPictureLight" in &render::glass::LIGHT, position, radius, color, distance),
         host!(PuddleGrid as "PuddleGrid" in &lattice::puddle::PUDDLE,
             size, quads, degree, coefficients, weights, dt, twice, kick, viscosity, keep, sponge_cells, sponge_drag,
