@@ -27,7 +27,8 @@ use crate::interrupt::Interrupt;
 pub(crate) enum Command {
     Render(render::RenderArguments),
     Check(check::CheckArguments),
-    Schema(schema::SchemaArguments),
+    /// Print the JSON schema of weather files, for editors
+    Schema,
     Mask(mask::MaskArguments),
     Drop(drop::DropArguments),
     Rain(rain::RainArguments),
@@ -43,7 +44,7 @@ impl Command {
         match self {
             Self::Render(arguments) => arguments.run(interrupt),
             Self::Check(arguments) => arguments.run(),
-            Self::Schema(arguments) => arguments.run(),
+            Self::Schema => schema::run(),
             Self::Mask(arguments) => arguments.run(interrupt),
             Self::Drop(arguments) => arguments.run(),
             Self::Rain(arguments) => arguments.run(),

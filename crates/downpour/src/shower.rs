@@ -246,13 +246,13 @@ impl Shower {
             pane: pane_plane(&self.weather, &stage.viewpoint)?,
         };
         let with_fog = |medium: RainMedium| medium.with_fog(self.weather.fog.as_ref(), stage.origin.y);
-        let Some(rates) = self.weather.keys.rate() else {
+        if self.weather.keys.rate().is_none() {
             return Ok(with_fog(RainMedium::new(&self.law, resolved, masks, &options)?));
-        };
+        }
         // The drops about the eye pass the height of the rate at another time.
         let above = stage.view()?.eye.y - self.weather.rain.rate_height_m;
         let passing_s = time_s + above / fall_speed(&self.law).max(0.1);
-        let rain = Rain { rate_mm_h: rates.at(passing_s), ..self.weather.rain };
+        let rain = self.weather.rain_at(passing_s);
         Ok(with_fog(RainMedium::new(&rain.sizes()?, resolved, masks, &options)?))
     }
 

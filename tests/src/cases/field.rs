@@ -12,7 +12,7 @@ use downpour_shaders::sim::field::{
     DRIFT, EYE_DROP, FIELD, FIELD_CLEAR_KERNEL, FIELD_FIND_KERNEL, SHELTER_AMONG_HOLES_KERNEL, SHELTER_KERNEL,
 };
 use downpour_sim::field::chain::{FieldTime, field_between, field_fallen, field_fraction, field_part};
-use downpour_sim::field::thinning::{field_interval, field_is_below};
+use downpour_sim::field::thinning::{field_interval, field_is_below, field_less};
 use downpour_sim::field::{EyeDrop, FallingDrop, RainField, drift_position, eye_drop_turned};
 use downpour_sim::gpu::{FieldPipeline, FieldSearch, GpuSimError, HolesOnGpu, ObstaclesOnGpu};
 use downpour_sim::shelter::{Holes, Obstacles};
@@ -95,10 +95,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             [product as u32, (product >> 32) as u32].words()
         }),
         FunctionCase::new("field_less", &FIELD, &[AnyWord, AnyWord, AnyWord, AnyWord], exact, |a| {
-            let mut long = || u64::from(a.u32()) << 32 | u64::from(a.u32());
-            let first = long();
-            let difference = first.wrapping_sub(long());
-            [(difference >> 32) as u32, difference as u32].words()
+            field_less(a.u32s(), a.u32s()).words()
         }),
         FunctionCase::new("field_is_below", &FIELD, &[Made(near), Made(near)], exact, |a| {
             u32::from(field_is_below(a.u32s(), a.u32s())).words()

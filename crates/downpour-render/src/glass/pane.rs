@@ -10,8 +10,7 @@ use downpour_shaders::render::glass::{
     GLASS_PICTURE_BLADES, GLASS_PICTURE_EXACT, GLASS_PICTURE_GLASS, GLASS_PICTURE_SCENE,
     GLASS_PICTURE_TATARCHUK,
 };
-use downpour_weather::{Pane, PaneFocus, PaneFresnel, PaneShadow, Rain, Weather};
-use downpour_wind::Keyed;
+use downpour_weather::{Pane, PaneFocus, PaneFresnel, PaneShadow, Weather};
 use glam::DVec3;
 
 use super::blade::GlassPictureBlade;
@@ -46,8 +45,8 @@ pub struct WetPane {
     pane: Pane,
     /// The weather it is in.
     weather: Weather,
-    /// Rain rate over time, mm/h.
-    rates: Keyed<f64>,
+    /// Rain rate, mm/h, and speed of the air, m/s, that the lattice has.
+    met: [f64; 2],
     /// View direction of the first picture, and its time, s.
     forward: DVec3,
     first_s: f64,
@@ -98,13 +97,14 @@ impl WetPane {
         let mut lattice = lattice(&pane.options(size, &weather.heaviest_rain(), begin_s))?;
         let forward = viewpoint.forward.as_dvec3();
         let speed = weather.pane_speed(begin_s, first_s, forward);
-        let (rain, air) = pane.weather(&weather.rain_at(begin_s), speed);
+        let rain = weather.rain_at(begin_s);
+        let met = [rain.rate_mm_h, speed];
+        let (rain, air) = pane.weather(&rain, speed);
         lattice.set_weather(&rain, &air)?;
         let water = water_index_in_air(SODIUM_M, &weather.rain.air).unwrap_or(WATER_INDEX);
         let above = pane.rows_above(size);
-        let rates = weather.rates_mm_h().into_owned();
         let (pane, weather, state) = (pane.clone(), weather.clone(), OnceLock::new());
-        Ok(Some(Self { pane, weather, rates, forward, first_s, size, begin_s, water, above, lattice, state }))
+        Ok(Some(Self { pane, weather, met, forward, first_s, size, begin_s, water, above, lattice, state }))
     }
 
     /// Steps rain and wipers to a time in seconds. The drops do not depend on how the time is divided.
@@ -115,20 +115,27 @@ impl WetPane {
         let tick = self.lattice.tick_s();
         let until = ((time_s - self.begin_s) / tick + 1.0e-6).floor().max(0.0) as u64;
         let every = (WEATHER_S / tick).ceil().max(1.0) as u64;
-        let speeds = self.pane.speed.as_ref().map_or(usize::MAX, |speed| speed.keys().len());
-        let moves = speeds.max(self.rates.keys().len()) > 1;
         while self.lattice.ticks() < until {
             self.state = OnceLock::new();
             let done = self.lattice.ticks();
-            if moves && done.is_multiple_of(every) {
-                let now = self.begin_s + done as f64 * tick;
-                let rain = Rain { rate_mm_h: self.rates.at(now), ..self.weather.rain };
-                let speed = self.weather.pane_speed(now, self.first_s, self.forward);
-                let (rain, air) = self.pane.weather(&rain, speed);
-                self.lattice.set_weather(&rain, &air)?;
+            if done.is_multiple_of(every) {
+                self.meet(self.begin_s + done as f64 * tick)?;
             }
             let count = (every - done % every).min(until - done);
             self.lattice.step(count as f64 * tick)?;
+        }
+        Ok(())
+    }
+
+    /// Sets rain and air of a time in seconds, if they are others: their tables take a while.
+    fn meet(&mut self, time_s: f64) -> Result<(), PaneError> {
+        let rain = self.weather.rain_at(time_s);
+        let speed = self.weather.pane_speed(time_s, self.first_s, self.forward);
+        let met = [rain.rate_mm_h, speed];
+        if met != self.met {
+            let (rain, air) = self.pane.weather(&rain, speed);
+            self.lattice.set_weather(&rain, &air)?;
+            self.met = met;
         }
         Ok(())
     }

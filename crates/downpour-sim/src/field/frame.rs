@@ -5,6 +5,7 @@ use bytemuck::{Pod, Zeroable};
 use downpour_shaders::sim::field::{FIELD_RADIUS, FIELD_SIDES, FIELD_THRESHOLDS};
 use glam::{DVec3, Vec3};
 
+use super::thinning::Thinning;
 use super::{Class, RainField, check_time};
 use crate::SimError;
 use crate::drift::Drift;
@@ -169,7 +170,7 @@ impl RainField {
             row.first_column = columns;
             if let Some(thinning) = &self.thinning {
                 let kind = thinning.classes[class.number];
-                row.first_kept = (class.number * (thinning.row_len() / thinning.classes.len())) as u32;
+                row.first_kept = Thinning::first_of(class.number) as u32;
                 (row.gauge, row.least_units, row.kept_inverse) = (kind.height, kind.low, kind.inverse);
             }
             columns = columns.saturating_add(row.counts[0].saturating_mul(row.counts[1]));

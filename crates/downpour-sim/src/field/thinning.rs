@@ -115,9 +115,14 @@ impl Thinning {
         });
     }
 
+    /// First node of a class in a row of the table.
+    pub(crate) fn first_of(class: usize) -> usize {
+        class * NODES
+    }
+
     /// Entries of a row of the table.
     pub(crate) fn row_len(&self) -> usize {
-        self.classes.len() * NODES
+        Self::first_of(self.classes.len())
     }
 
     /// True if a drop falls: drop `place` (whole periods, and the phase) of a chain of a class, of a diameter and a rate of fall, with a
@@ -130,9 +135,9 @@ impl Thinning {
         word: u32,
     ) -> bool {
         let kind = self.classes[class];
-        let row = field_row(&self.begins, rate, field_above(place, kind.height)) as usize;
+        let row = field_row(&self.begins, rate, field_less(place, kind.height)) as usize;
         let [interval, part] = field_interval(units.saturating_sub(kind.low), kind.inverse);
-        let first = row * self.row_len() + class * NODES + interval as usize;
+        let first = row * self.row_len() + Self::first_of(class) + interval as usize;
         let limit = field_between(self.kept[first], self.kept[first + 1], part);
         word < limit || limit == u32::MAX
     }
@@ -140,7 +145,7 @@ impl Thinning {
 
 /// Difference of two numbers of two words, the high one first.
 #[must_use]
-pub fn field_above(a: [u32; 2], b: [u32; 2]) -> [u32; 2] {
+pub fn field_less(a: [u32; 2], b: [u32; 2]) -> [u32; 2] {
     let word = |[high, low]: [u32; 2]| u64::from(high) << 32 | u64::from(low);
     let difference = word(a).wrapping_sub(word(b));
     [(difference >> 32) as u32, difference as u32]

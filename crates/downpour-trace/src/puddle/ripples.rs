@@ -46,19 +46,21 @@ struct Changes {
 }
 
 impl Changes {
-    /// The rain of a step, if it is another than that of the last one; within it `None` for a dry time.
-    fn rain(&mut self, step: i64) -> Result<Option<Option<PuddleRain>>, PuddleError> {
+    /// Makes a rain that of a step: `None` in a dry time.
+    fn follow(&mut self, step: i64, rain: &mut Option<PuddleRain>) -> Result<(), PuddleError> {
         let number = step.div_euclid(STEPS_OF_RATE);
         if self.number.replace(number) == Some(number) {
-            return Ok(None);
+            return Ok(());
         }
         let middle_s = (number as f64 + 0.5) * STEPS_OF_RATE as f64 * STEP_S;
         let rate = self.rates.at(middle_s);
-        if rate <= 0.0 {
-            return Ok(Some(None));
+        *rain = None;
+        if rate > 0.0 {
+            let heaviest = &self.heaviest;
+            let sizes = DropSizeDistribution::with_options(heaviest.law(), rate, heaviest.options())?;
+            *rain = Some(PuddleRain::new(&sizes, self.seed));
         }
-        let rain = DropSizeDistribution::with_options(self.heaviest.law(), rate, self.heaviest.options())?;
-        Ok(Some(Some(PuddleRain::new(&rain, self.seed))))
+        Ok(())
     }
 }
 
@@ -105,8 +107,8 @@ impl Ripples {
         }
         let extent = self.lattice.extent_m();
         while self.step < until {
-            if let Some(rain) = self.changes.as_mut().map(|changes| changes.rain(self.step)).transpose()? {
-                self.rain = rain.unwrap_or(self.rain.take());
+            if let Some(changes) = &mut self.changes {
+                changes.follow(self.step, &mut self.rain)?;
             }
             if let Some(rain) = &self.rain {
                 self.lattice.seed(&rain.impacts(extent, self.step as u64, STEP_S as f32)?)?;
