@@ -190,18 +190,18 @@ fn a_streak_before_dark_ground_has_the_light_of_the_exact_one() {
 /// streak is drawn twice, with other samples: the second number is how far apart the two are.
 fn lamp_ratio(diameter: f64, [yaw, height, radius]: [f64; 3], instants: u32) -> [f64; 2] {
     const DARK: [[f32; 3]; 2] = [[0.0; 3]; 2];
-    let lamp =
-        SpecimenLamp::new(yaw.to_radians(), height.to_radians(), radius.to_radians(), [300.0; 3]).unwrap();
+    let lamp = SpecimenLamp::new(yaw.to_radians(), height.to_radians(), radius.to_radians(), [300.0; 3])
+        .expect("a lamp");
     let lamps = [lamp];
-    let lit = Sky::new(2, 1, &DARK).and_then(|sky| sky.with_lamps(&lamps)).unwrap();
+    let lit = Sky::new(2, 1, &DARK).and_then(|sky| sky.with_lamps(&lamps)).expect("a sky");
     let options =
         SpecimenOptions { yaw: 0.0, instants, samples: 4, ..options(diameter * 0.5e-3, Amplitudes::NONE) };
     let shape = drop(diameter);
-    let first = sum(&render_specimen(&shape, &options, lit).unwrap());
+    let first = sum(&render_specimen(&shape, &options, lit).expect("a picture"));
     let others = SpecimenOptions { samples: 5, instants: instants * 16 / 25, ..options };
-    let second = sum(&render_specimen(&shape, &others, lit).unwrap());
+    let second = sum(&render_specimen(&shape, &others, lit).expect("a picture"));
     let exact = 0.5 * (first + second);
-    let table = sum(&render_specimen_table(&shape, &options, lit).unwrap());
+    let table = sum(&render_specimen_table(&shape, &options, lit).expect("a picture"));
     assert!(exact > 1.0, "{diameter} mm, yaw {yaw}: {exact}");
     [table / exact - 1.0, (first - second).abs() / exact]
 }
@@ -230,7 +230,7 @@ fn a_lamp_lights_the_streak() {
 
 /// Lamps all around, every 10 degrees, from below to above: within 6 % and the noise of the exact streak.
 #[test]
-#[ignore = "a long sweep: cargo xtask test --all"]
+#[ignore = "a sweep of 380 lamps: run with --release"]
 fn lamps_all_around_light_the_streak() {
     let mut over = Vec::new();
     for diameter in [1.0, 2.0, 3.0, 5.0] {
