@@ -34,6 +34,7 @@ pub mod frame;
 pub mod height;
 pub mod motion;
 pub mod normal;
+pub mod ridge;
 pub mod size;
 
 pub use contact::GlassContact;

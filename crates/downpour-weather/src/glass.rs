@@ -2,8 +2,9 @@
 
 use super::fault::Positions;
 use super::quantity::{
-    AboveM, AdvancingDeg, BeforeS, BladeM, CellMm, DryingMmH, Exactly, FilmUm, Fraction, HighlightMm, In,
-    PaneApertureMm, PaneM, PaneMS, PaneTiltDeg, PeriodS, PivotM, ReachM, RecedingDeg, TurnDeg,
+    AboveM, AdvancingDeg, BeforeS, BladeFilmUm, BladeM, CellMm, DryingMmH, Exactly, FilmUm, Fraction,
+    HighlightMm, In, PaneApertureMm, PaneM, PaneMS, PaneTiltDeg, PeriodS, PivotM, ReachM, RecedingDeg,
+    TurnDeg,
 };
 use super::wind::keys::NumberKeys;
 use super::{Rain, Weather};
@@ -263,6 +264,7 @@ struct WiperTable {
     period_s: Option<In<PeriodS>>,
     angle_deg: Option<NumberKeys<TurnDeg>>,
     is_drawn: Option<bool>,
+    film_um: Option<In<BladeFilmUm>>,
     #[serde(default)]
     worn: Vec<WornTable>,
 }
@@ -396,6 +398,7 @@ impl WiperTable {
             inner_m: self.inner_m.map_or(0.15 * length, |m| m.0),
             outer_m: length,
             motion,
+            film_m: self.film_um.map_or(0.2, |um| um.0) * 1.0e-6,
             worn: self.worn.iter().map(worn).collect(),
         })
     }

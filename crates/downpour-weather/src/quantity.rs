@@ -104,6 +104,7 @@ ranges! {
     RecedingDeg: 0.0, 120.0, "0 to 120 degrees";
     HighlightMm: 0.0, 10.0, "0 to 10 mm";
     FilmUm: 0.0, 200.0, "0 to 200 um";
+    BladeFilmUm: 0.0, 20.0, "0 to 20 um";
     DryingMmH: 0.0, 100.0, "0 to 100 mm/h";
     PivotM: -20.0, 20.0, "-20 to 20 m";
     BladeM: 0.0, 20.0, "0 to 20 m";
