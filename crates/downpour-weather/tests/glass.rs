@@ -34,6 +34,7 @@ from_deg = 10
 to_deg = 170
 period_s = 1.4
 worn = [{ from_m = 0.2, to_m = 0.22, leaves = 0.7 }]
+film_um = 3
 [[glass.wiper]]
 pivot_m = [0.1, 0.62]
 length_m = 0.4
@@ -63,6 +64,7 @@ fn every_key_arrives() {
     let [one, two] = &pane.wipers[..] else { panic!("{} wipers", pane.wipers.len()) };
     assert!(matches!(one.motion, GlassWiperMotion::Sweep { period_s: 1.4, .. }));
     assert_eq!(one.worn, [GlassWornBand { from_m: 0.2, to_m: 0.22, leaves: 0.7 }]);
+    assert_eq!((one.film_m, two.film_m), (3.0 * 1.0e-6, 0.2 * 1.0e-6));
     assert_eq!((one.outer_m, two.inner_m), (0.55, 0.1));
     assert_eq!(pane.wipers_drawn, [true, false]);
     // The lattice's time starts 12 s earlier: at its 12 s the keyed blade is vertical.

@@ -38,10 +38,12 @@ fn glass_blade_ahead(blade: GlassBlade) -> vec2i {
     return blade.turn * vec2i(-blade.after.y, blade.after.x);
 }
 
-// Whole cells from a cell that the blade has passed to the blade.
-fn glass_blade_back(blade: GlassBlade, cell: vec2i) -> i32 {
+// Whole cells that the blade moves in the tick at a cell's distance from the pivot, at least 1.
+fn glass_blade_moved(blade: GlassBlade, cell: vec2i) -> i32 {
     let at = cell * 2 + 1 - blade.pivot;
-    return (-blade.turn * glass_blade_side(blade.after, at)) >> 15u;
+    let along = (blade.after.x * at.x + blade.after.y * at.y) >> 14u;
+    let turned = (blade.turn * glass_blade_side(blade.before, blade.after)) >> 14u;
+    return clamp((along * turned + GLASS_CELL) >> 15u, 1, 8);
 }
 
 // Cell ahead of the blade to which it pushes the water of a cell, and that many half cells outward along the blade; not

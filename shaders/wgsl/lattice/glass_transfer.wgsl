@@ -81,12 +81,11 @@ fn glass_transfer_blade(cell: vec2i) -> u32 {
 fn glass_transfer_film(blade: GlassBlade, cell: vec2i, mass: u32, tick: u32) -> u32 {
     let index = glass_frame_index(glass_transfer_frame, cell);
     let words = rng_draw(glass_transfer_frame.seed, index, tick, 17u);
-    let back = max(glass_blade_back(blade, cell), 0);
-    // The cells that the water is pushed over.
-    let count = u32(back) + u32(GLASS_BLADE_AHEAD) / 2u;
+    // The ridge is as wide as a cell or as what the blade sweeps in a tick: this cell stands for so many.
+    let count = u32(glass_blade_moved(blade, cell));
     let film = glass_transfer_dry(mass, blade.film * count, words.x);
     let off = ((words.y >> 16u) * count) >> 16u;
-    let spot = cell + ((glass_blade_ahead(blade) * (i32(off) - 1) + GLASS_CELL / 2) >> vec2u(14u));
+    let spot = cell - ((glass_blade_ahead(blade) * i32(off) + GLASS_CELL / 2) >> vec2u(14u));
     if glass_transfer_open(spot) {
         glass_transfer_put(spot, film);
     } else {
@@ -96,8 +95,8 @@ fn glass_transfer_film(blade: GlassBlade, cell: vec2i, mass: u32, tick: u32) -> 
 }
 
 // Moves water to a cell, or to where a blade pushes it: into the ridge ahead of it, which evens out along the blade. Returns
-// true if no blade diverts it.
-fn glass_transfer_bring(cell: vec2i, mass: u32, tick: u32) -> bool {
+// true if no blade diverts it. `films`: a film stays behind.
+fn glass_transfer_bring(cell: vec2i, mass: u32, films: bool, tick: u32) -> bool {
     let which = glass_transfer_blade(cell);
     if which == GLASS_OUT {
         glass_transfer_put(cell, mass);
@@ -106,7 +105,10 @@ fn glass_transfer_bring(cell: vec2i, mass: u32, tick: u32) -> bool {
     let blade = glass_transfer_blades[which];
     let left = (mass * blade.leaves) >> 8u;
     glass_transfer_put(cell, left);
-    let film = glass_transfer_film(blade, cell, mass - left, tick);
+    var film = 0u;
+    if films {
+        film = glass_transfer_film(blade, cell, mass - left, tick);
+    }
     let rest = mass - left - film;
     for (var outward = -2; outward <= 2; outward += 2) {
         let part = select(rest / 4u, rest - rest / 4u * 2u, outward == 0);
@@ -165,7 +167,7 @@ fn glass_transfer_flow(cell: vec2i, mass: u32, decided: u32, tick: u32) -> u32 {
         let part = (mass * ((decided >> (8u * side)) & 255u)) >> 8u;
         if part != 0u {
             let to = cell + glass_motion_offset((decided >> (16u + 4u * side)) & 15u);
-            glass_transfer_bring(to, part, tick);
+            glass_transfer_bring(to, part, false, tick);
             sum += part;
         }
     }
@@ -205,7 +207,7 @@ fn glass_transfer_drop(cell: vec2i, tick: u32) {
     }
     if goal == GLASS_OUT {
         glass_transfer_count(GLASS_TOTAL_EDGE, mass);
-    } else if glass_transfer_bring(glass_frame_cell(frame, goal), mass, tick) && free && mass != 0u {
+    } else if glass_transfer_bring(glass_frame_cell(frame, goal), mass, free, tick) && free && mass != 0u {
         atomicMax(&glass_transfer_arrival[goal], key);
     }
 }

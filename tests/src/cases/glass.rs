@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use downpour_gpu::{Gpu, GpuError};
 use downpour_lattice::glass::blade::{
-    GlassBlade, glass_blade_ahead, glass_blade_back, glass_blade_push, glass_blade_side, glass_blade_sweeps,
+    GlassBlade, glass_blade_ahead, glass_blade_moved, glass_blade_push, glass_blade_side, glass_blade_sweeps,
 };
 use downpour_lattice::glass::frame::{
     GlassFrame, glass_frame_cell, glass_frame_holds, glass_frame_index, glass_frame_landing,
@@ -241,8 +241,8 @@ fn positions() -> Vec<FunctionCase> {
         FunctionCase::new("glass_blade_ahead", &shaders::BLADE, &[blade_of], INTEGERS, |a| {
             words(glass_blade_ahead(&blade(a)))
         }),
-        FunctionCase::new("glass_blade_back", &shaders::BLADE, &[blade_of, Made(cell)], INTEGERS, |a| {
-            vec![glass_blade_back(&blade(a), ivec2(a)) as u32]
+        FunctionCase::new("glass_blade_moved", &shaders::BLADE, &[blade_of, Made(cell)], INTEGERS, |a| {
+            vec![glass_blade_moved(&blade(a), ivec2(a)) as u32]
         }),
         FunctionCase::new("glass_frame_index", &shaders::FRAME, &[frame_of, Made(cell)], INTEGERS, |a| {
             glass_frame_index(&frame(a), ivec2(a)).words()

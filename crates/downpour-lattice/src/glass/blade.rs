@@ -52,12 +52,14 @@ pub fn glass_blade_ahead(blade: &GlassBlade) -> IVec2 {
     blade.turn * IVec2::new(-blade.after[1], blade.after[0])
 }
 
-/// Whole cells from a cell that the blade has passed to the blade.
+/// Whole cells that the blade moves in the tick at a cell's distance from the pivot, at least 1.
 #[inline]
 #[must_use]
-pub fn glass_blade_back(blade: &GlassBlade, cell: IVec2) -> i32 {
+pub fn glass_blade_moved(blade: &GlassBlade, cell: IVec2) -> i32 {
     let at = cell * 2 + 1 - IVec2::from(blade.pivot);
-    (-blade.turn * glass_blade_side(blade.after.into(), at)) >> 15
+    let along = (blade.after[0] * at.x + blade.after[1] * at.y) >> 14;
+    let turned = blade.turn * glass_blade_side(blade.before.into(), blade.after.into()) >> 14;
+    ((along * turned + GLASS_CELL) >> 15).clamp(1, 8)
 }
 
 /// Cell ahead of the blade to which it pushes the water of a cell, and that many half cells outward along the blade; not

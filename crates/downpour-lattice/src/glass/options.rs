@@ -95,7 +95,7 @@ pub struct GlassWetting {
 
 impl Default for GlassWetting {
     fn default() -> Self {
-        Self { life_s: 20.0, ease: 0.35, pull: 1.5, film_life_s: 1.0 }
+        Self { life_s: 20.0, ease: 0.35, pull: 1.5, film_life_s: 0.7 }
     }
 }
 

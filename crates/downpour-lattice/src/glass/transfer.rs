@@ -6,12 +6,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use downpour_math::rng::rng_draw;
 use downpour_shaders::lattice::glass::{
-    GLASS_BLADE_AHEAD, GLASS_CELL, GLASS_INDEX, GLASS_OBSTACLE, GLASS_OUT, GLASS_RIDGE_CLASS, GLASS_STAYS,
-    GLASS_TAKEN,
+    GLASS_CELL, GLASS_INDEX, GLASS_OBSTACLE, GLASS_OUT, GLASS_RIDGE_CLASS, GLASS_STAYS, GLASS_TAKEN,
 };
 use glam::IVec2;
 
-use super::blade::{GlassBlade, glass_blade_ahead, glass_blade_back, glass_blade_push, glass_blade_sweeps};
+use super::blade::{GlassBlade, glass_blade_ahead, glass_blade_moved, glass_blade_push, glass_blade_sweeps};
 use super::cells::{Cells, Tick, load};
 use super::frame::{glass_frame_cell, glass_frame_holds, glass_frame_index, glass_frame_landing};
 use super::motion::glass_motion_offset;
@@ -93,25 +92,25 @@ fn glass_transfer_film(
 ) -> u32 {
     let index = glass_frame_index(tick.frame, cell);
     let words = rng_draw(tick.frame.seed, index, tick.step, 17);
-    let back = glass_blade_back(blade, cell).max(0);
-    // The cells that the water is pushed over.
-    let count = back as u32 + GLASS_BLADE_AHEAD as u32 / 2;
+    // The ridge is as wide as a cell or as what the blade sweeps in a tick: this cell stands for so many.
+    let count = glass_blade_moved(blade, cell) as u32;
     let film = glass_transfer_dry(mass, blade.film * count, words[0]);
     let off = ((words[1] >> 16) * count) >> 16;
-    let spot = cell + ((glass_blade_ahead(blade) * (off as i32 - 1) + GLASS_CELL / 2) >> 14);
+    let spot = cell - ((glass_blade_ahead(blade) * off as i32 + GLASS_CELL / 2) >> 14);
     let to = if glass_transfer_open(cells, tick, spot) { spot } else { cell };
     glass_transfer_put(cells, tick, to, film, come);
     film
 }
 
 /// Moves water to a cell, or to where a blade pushes it: into the ridge ahead of it, which evens out along the blade. Returns
-/// true if no blade diverts it.
+/// true if no blade diverts it. `films`: a film stays behind.
 fn glass_transfer_bring(
     cells: &Cells,
     tick: &Tick<'_>,
     counters: &Counters,
     cell: IVec2,
     mass: u32,
+    films: bool,
     come: &mut Vec<u32>,
 ) -> bool {
     let which = glass_transfer_blade(tick, cell);
@@ -122,7 +121,7 @@ fn glass_transfer_bring(
     let blade = &tick.blades[which as usize];
     let left = (mass * blade.leaves) >> 8;
     glass_transfer_put(cells, tick, cell, left, come);
-    let film = glass_transfer_film(cells, tick, blade, cell, mass - left, come);
+    let film = if films { glass_transfer_film(cells, tick, blade, cell, mass - left, come) } else { 0 };
     let rest = mass - left - film;
     for outward in [-2, 0, 2] {
         let part = if outward == 0 { rest - rest / 4 * 2 } else { rest / 4 };
@@ -201,7 +200,7 @@ fn glass_transfer_flow(
         let part = (mass * ((decided >> (8 * side)) & 255)) >> 8;
         if part != 0 {
             let to = cell + glass_motion_offset((decided >> (16 + 4 * side)) & 15);
-            glass_transfer_bring(cells, tick, counters, to, part, come);
+            glass_transfer_bring(cells, tick, counters, to, part, false, come);
             sum += part;
         }
     }
@@ -246,7 +245,7 @@ pub(super) fn glass_transfer_drop(
     }
     if goal == GLASS_OUT {
         glass_transfer_count(&counters.over_edge, mass);
-    } else if glass_transfer_bring(cells, tick, counters, glass_frame_cell(frame, goal), mass, come)
+    } else if glass_transfer_bring(cells, tick, counters, glass_frame_cell(frame, goal), mass, free, come)
         && free
         && mass != 0
     {
