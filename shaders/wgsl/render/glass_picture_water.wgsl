@@ -56,7 +56,9 @@ fn glass_picture_water_cap(drop: GlassPictureDrop, position: vec2f) -> vec3f {
     let down_y = steep * of_y;
     let slope = drop.along * down_x + vec2f(-drop.along.y, drop.along.x) * down_y;
     let pulled = drop.lean * r;
-    let fraction = max(1.0 + pulled * (away.x * drop.droop.x + away.y * drop.droop.y), 0.1);
+    // A ridge grows along its axis.
+    let off = position - drop.center;
+    let fraction = max(1.0 + pulled * (off.x * drop.droop.x + off.y * drop.droop.y), 0.1);
     return vec3f(height * fraction, slope * fraction + drop.droop * (height * pulled));
 }
 

@@ -26,14 +26,17 @@ const HALF: f64 = 1.0;
 /// Thinnest ridge that is drawn, m.
 const MIN_HALF_WIDTH_M: f64 = 2.0e-5;
 
-/// Water per cell of the length, in units, and its middle, cells ahead of a cell of a ridge.
-fn around(options: &GlassOptions, state: &GlassState, cell: IVec2, ahead: DVec2) -> [f64; 2] {
+/// Largest slope of the half-width along a ridge.
+const MAX_TAPER: f64 = 0.3;
+
+/// Water per cell of the length, in units, and its middle, cells ahead of a cell of a ridge, `aside` cells along the ridge from there.
+fn around(options: &GlassOptions, state: &GlassState, cell: IVec2, ahead: DVec2, aside: f64) -> [f64; 2] {
     let size = IVec2::new(options.size[0] as i32, options.size[1] as i32);
     let (mut water, mut moment) = (0.0, 0.0);
     for y in -ALONG..=ALONG {
         for x in -ALONG..=ALONG {
             let (off, to) = (IVec2::new(x, y).as_dvec2(), cell + IVec2::new(x, y));
-            let (along, across) = (off.dot(ahead.perp()), off.dot(ahead));
+            let (along, across) = (off.dot(ahead.perp()) - aside, off.dot(ahead));
             if along.abs() > f64::from(ALONG) || across.abs() > ACROSS {
                 continue;
             }
@@ -69,22 +72,31 @@ pub(super) fn ridge_piece(
     let cell = IVec2::new((index % columns) as i32, (index / columns) as i32);
     let &[velocity, _] = state.motion.get(index as usize)?;
     let ahead = glass_motion_unpack(velocity).as_dvec2().normalize_or_zero();
-    let [units, middle] = around(options, state, cell, ahead);
-    let radius = options.contact.ridge(units * Glass::UNIT_M3 / options.cell_m);
+    let section = |aside: f64| {
+        let [units, middle] = around(options, state, cell, ahead, aside);
+        let radius = options.contact.ridge(units * Glass::UNIT_M3 / options.cell_m);
+        let across = middle * options.cell_m + GlassWiper::LIP_M + radius;
+        let along = (cell.as_dvec2() + 0.5 + ahead.perp() * aside) * options.cell_m;
+        (along + ahead * across, radius)
+    };
+    let (center, radius) = section(0.0);
     if radius < MIN_HALF_WIDTH_M {
         return None;
     }
-    let off = middle * options.cell_m + GlassWiper::LIP_M + radius;
-    let center = (cell.as_dvec2() + 0.5) * options.cell_m + ahead * off;
-    let axis = ahead.perp() * (HALF * options.cell_m);
+    // Pieces follow the ridge's bends and grow with it, so that neighboring ones meet.
+    let ((before, narrow), (after, wide)) = (section(-1.0), section(1.0));
+    let along = (after - before).normalize_or_zero();
+    let taper = (wide - narrow) / (after - before).length().max(options.cell_m);
+    let axis = along * (HALF * options.cell_m);
+    let droop = if taper < 0.0 { -along } else { along };
     Some(GlassPictureDrop {
         center: center.as_vec2().into(),
         radius: radius as f32,
         sphere: options.contact.sphere(radius) as f32,
         along: ahead.as_vec2().into(),
         behind: 1.0,
-        lean: 0.0,
-        droop: [0.0, 1.0],
+        lean: taper.abs().min(MAX_TAPER) as f32,
+        droop: droop.as_vec2().into(),
         axis: axis.as_vec2().into(),
         lobes: [0.0; 4],
     })
@@ -98,8 +110,8 @@ mod tests {
     use super::super::water::glass_picture_water_cap;
     use super::*;
 
-    /// A blade of 60 mm pushes 6 mm^2 of water for each meter of its length... of drops ahead of it: along the blade the water is
-    /// one ridge, as high as a segment of a circle with that cross-section, without gaps, and not beads.
+    /// A blade of 80 mm pushes the water of drops together: along it the water is one ridge, without gaps, no beads, as high as a
+    /// segment of a circle that has its cross-section.
     #[test]
     fn swept_water_is_one_ridge_and_not_beads() {
         let key = |time_s, angle_rad| GlassWiperKey { time_s, angle_rad };

@@ -79,7 +79,9 @@ pub fn glass_picture_water_cap(drop: &GlassPictureDrop, position: Vec2) -> Vec3 
     let down_y = steep * of_y;
     let slope = along * down_x + Vec2::new(-along.y, along.x) * down_y;
     let pulled = drop.lean * r;
-    let fraction = (1.0 + pulled * (away.x * droop.x + away.y * droop.y)).max(0.1);
+    // A ridge grows along its axis.
+    let off = position - Vec2::from(drop.center);
+    let fraction = (1.0 + pulled * (off.x * droop.x + off.y * droop.y)).max(0.1);
     let slope = slope * fraction + droop * (height * pulled);
     Vec3::new(height * fraction, slope.x, slope.y)
 }
