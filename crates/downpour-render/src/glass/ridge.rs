@@ -12,10 +12,10 @@ use glam::{DVec2, IVec2};
 use super::water::GlassPictureDrop;
 
 /// Standard deviation of the means along the ridge, cells.
-const SMOOTH: f64 = 3.0;
+const SMOOTH: f64 = 5.0;
 
 /// Cells along the ridge that count.
-const ALONG: i32 = 9;
+const ALONG: i32 = 13;
 
 /// Cells across it.
 const ACROSS: f64 = 4.0;
