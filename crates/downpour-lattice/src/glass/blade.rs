@@ -58,7 +58,7 @@ pub fn glass_blade_ahead(blade: &GlassBlade) -> IVec2 {
 pub fn glass_blade_moved(blade: &GlassBlade, cell: IVec2) -> i32 {
     let at = cell * 2 + 1 - IVec2::from(blade.pivot);
     let along = (blade.after[0] * at.x + blade.after[1] * at.y) >> 14;
-    let turned = blade.turn * glass_blade_side(blade.before.into(), blade.after.into()) >> 14;
+    let turned = (blade.turn * glass_blade_side(blade.before.into(), blade.after.into())) >> 14;
     ((along * turned + GLASS_CELL) >> 15).clamp(1, 8)
 }
 
