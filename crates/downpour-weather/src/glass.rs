@@ -188,7 +188,6 @@ impl Pane {
                 .collect(),
             speed_limit_m_s: SPEED_LIMIT_M_S,
             seed: self.seed,
-            ..usual
         }
     }
 
