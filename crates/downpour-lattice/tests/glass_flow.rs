@@ -41,13 +41,6 @@ fn the_first_centimeters_of_a_picture_are_as_wet_as_the_rest() {
     assert!(bands.iter().all(|band| (0.7..1.3).contains(band)), "{bands:?}");
 }
 
-#[test]
-#[ignore = "minutes: run with --release"]
-fn bands_of_a_picture_are_within_fifteen_percent() {
-    let bands = bands(150, 6, 20);
-    assert!(bands.iter().all(|band| (0.85..1.15).contains(band)), "{bands:?}");
-}
-
 /// Fraction of the moving water that is on glass which was wet before, and fraction of the glass that was.
 fn wet_paths(rate_mm_h: f64) -> [f64; 2] {
     let (columns, rows) = (80, 150);
