@@ -79,6 +79,7 @@ impl Loaded {
         }
         let mut remaining = *budget;
         let mut loaded = Self { masks: masks(weather, files, &mut remaining)?, ..self.clone() };
+        read_pane_maps(weather, files, &mut remaining)?;
         if reloaded.sky {
             let mut warnings = Warnings::default();
             loaded.unscaled = None;
