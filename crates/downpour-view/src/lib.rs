@@ -1,0 +1,7 @@
+//! The live window of Downpour: the scene with its rain, and the weather file under it, edited by hand.
+
+#![forbid(unsafe_code)]
+
+pub mod document;
+pub mod key_path;
+pub mod plain;
