@@ -3,5 +3,11 @@
 #![forbid(unsafe_code)]
 
 pub mod document;
+pub mod engine;
 pub mod key_path;
+pub mod navigation;
+pub mod objects;
 pub mod plain;
+pub mod schema;
+pub mod theme;
+pub mod wire;

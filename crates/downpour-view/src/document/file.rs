@@ -45,7 +45,8 @@ impl Document {
                 read(path)?;
                 let file = path.file_name().unwrap_or_default().to_string_lossy();
                 let text = format!(
-                    "# A model in a shower.\n\n[rain]\nrate_mm_h = 50\n\n[sky]\nzenith_color = [2300, 2450, 2650]\n\n\
+                    "# A model in a shower.\n\n[rain]\nrate_mm_h = 50\n\n[sky]\nzenith_color = [0.3, 0.33, 0.38]\n\n\
+                     [camera]\nshutter_s = 0.004\n\n\
                      [[model]]\nfile = {}\n",
                     toml_edit::Value::from(file.as_ref())
                 );
