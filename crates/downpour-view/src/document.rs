@@ -13,6 +13,7 @@ use toml_edit::DocumentMut;
 
 pub use error::DocumentError;
 pub use file::Recovery;
+pub(crate) use file::write_whole;
 use history::{History, State};
 
 use crate::key_path::KeyPath;
@@ -153,15 +154,33 @@ impl Document {
         self.change(&format!("reset {path}"), None, |text| edit::remove(text, path))
     }
 
-    /// Removes a key and sets another in its place.
+    /// Sets several keys and removes others that are there, at once, or nothing.
     ///
     /// # Errors
     /// As [`Document::set`].
-    pub fn exchange(&mut self, old: &KeyPath, new: &KeyPath, value: &Plain) -> Result<(), DocumentError> {
-        self.change(&format!("set {new}"), None, |text| {
-            edit::remove(text, old)?;
-            edit::set(text, new, value)
+    pub fn set_and_remove(
+        &mut self,
+        label: &str,
+        values: &[(KeyPath, Plain)],
+        removed: &[KeyPath],
+    ) -> Result<(), DocumentError> {
+        let removed: Vec<&KeyPath> = removed.iter().filter(|path| self.get(path).is_some()).collect();
+        self.change(label, None, |text| {
+            removed.iter().try_for_each(|path| edit::remove(text, path))?;
+            values.iter().try_for_each(|(path, value)| edit::set(text, path, value))
         })
+    }
+
+    /// Gives a table of the root these keys and no others.
+    ///
+    /// # Errors
+    /// As [`Document::set`].
+    pub fn replace_table(&mut self, table: &str, entries: Vec<(String, Plain)>) -> Result<(), DocumentError> {
+        let path = KeyPath::of(table);
+        let old = self.get(&path).map(Plain::entries).unwrap_or_default();
+        let removed: Vec<KeyPath> = old.iter().map(|(key, _)| path.key(key)).collect();
+        let values: Vec<_> = entries.into_iter().map(|(key, value)| (path.key(&key), value)).collect();
+        self.set_and_remove(&format!("set {table}"), &values, &removed)
     }
 
     /// Adds an entry to a list such as `wind`. Returns its index.
@@ -250,8 +269,8 @@ impl Document {
         if text == before {
             return Ok(());
         }
-        let weather = Weather::parse(&self.name, &text)
-            .map_err(|error| DocumentError::Refused(error.to_string()))?;
+        let weather =
+            Weather::parse(&self.name, &text).map_err(|error| DocumentError::Refused(error.to_string()))?;
         self.history.push(label, stroke, State { text: before });
         self.take(edited, weather);
         Ok(())

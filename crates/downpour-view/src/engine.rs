@@ -14,6 +14,7 @@ use downpour::weather::{CameraPose, Weather};
 
 pub use drawn::{Drawn, Histogram, PictureView};
 pub use machine::Machine;
+pub(crate) use machine::open as open_device;
 pub use pace::{Pace, SCALES};
 
 /// Choice of the device that draws.

@@ -17,7 +17,9 @@ pub struct KeyPath(Vec<Step>);
 
 /// Text that is no path of a key.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("key path \"{0}\"; allowed: names of letters, digits and _, with [index] after a list, such as wind[0].vortex.core_m")]
+#[error(
+    "key path \"{0}\"; allowed: names of letters, digits and _, with [index] after a list, such as wind[0].vortex.core_m"
+)]
 pub struct BadKeyPath(pub String);
 
 impl KeyPath {

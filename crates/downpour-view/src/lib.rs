@@ -2,8 +2,11 @@
 
 #![forbid(unsafe_code)]
 
+pub mod app;
+pub mod brush;
 pub mod document;
 pub mod engine;
+pub mod job;
 pub mod key_path;
 pub mod navigation;
 pub mod objects;

@@ -126,7 +126,8 @@ fn object(id: ObjectId, entry: &Plain, time_s: f64) -> Option<Object> {
         }
         "directional" => {
             object.direction = along("direction", DVec3::NEG_Y);
-            object.strength = Some((path.key("illuminance_lux"), number("illuminance_lux").unwrap_or(1000.0)));
+            object.strength =
+                Some((path.key("illuminance_lux"), number("illuminance_lux").unwrap_or(1000.0)));
         }
         "puddle" => {
             object.position = Some((path.key("position_m"), vector("position_m")?));
@@ -182,10 +183,9 @@ pub fn new_entry(kind: &str, at: DVec3) -> Option<(&'static str, Plain)> {
     let one = |entries: Vec<(&str, Plain)>| table(vec![(kind, table(entries))]);
     Some(match kind {
         "uniform" => ("wind", one(vec![("speed_m_s", number(5.0)), ("towards_deg", number(0.0))])),
-        "source" | "sink" | "vortex" => (
-            "wind",
-            one(vec![("strength_m2_s", number(40.0)), ("center_m", place), ("core_m", number(2.0))]),
-        ),
+        "source" | "sink" | "vortex" => {
+            ("wind", one(vec![("strength_m2_s", number(40.0)), ("center_m", place), ("core_m", number(2.0))]))
+        }
         "tornado" => (
             "wind",
             one(vec![
@@ -211,7 +211,9 @@ pub fn new_entry(kind: &str, at: DVec3) -> Option<(&'static str, Plain)> {
                 ("illuminance_lux", number(1000.0)),
             ]),
         ),
-        "puddle" => ("puddle", table(vec![("position_m", place), ("size_m", Plain::of_numbers(&[4.0, 4.0]))])),
+        "puddle" => {
+            ("puddle", table(vec![("position_m", place), ("size_m", Plain::of_numbers(&[4.0, 4.0]))]))
+        }
         "drip" => ("drip", table(vec![("position_m", place), ("per_second", number(2.0))])),
         _ => return None,
     })
@@ -289,7 +291,10 @@ mod tests {
 
     #[test]
     fn numbers_are_rounded_to_what_people_write() {
-        assert_eq!([0.123_456, 12.345_6, 123_456.0, -0.000_123_46].map(significant), [0.1235, 12.35, 123_456.0, -0.000_123_5]);
+        assert_eq!(
+            [0.123_456, 12.345_6, 123_456.0, -0.000_123_46].map(significant),
+            [0.1235, 12.35, 123_456.0, -0.000_123_5]
+        );
         assert_eq!(rounded(1.000_49), 1.0);
     }
 }

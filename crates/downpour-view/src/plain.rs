@@ -18,6 +18,17 @@ pub enum Plain {
 }
 
 impl Plain {
+    /// A value as a weather file writes it.
+    ///
+    /// # Errors
+    /// What is wrong with the text.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let value: Value = text.trim().parse().map_err(|error: toml_edit::TomlError| {
+            format!("{}; allowed: a value of TOML, such as 2.5, \"text\" or [1, 2, 3]", error.message())
+        })?;
+        Ok(Self::of_value(&value))
+    }
+
     /// The number, if it is one.
     #[must_use]
     pub fn number(&self) -> Option<f64> {
@@ -203,6 +214,9 @@ mod tests {
     #[test]
     fn numbers_are_written_as_files_write_them() {
         let written = |number| Plain::Number(number).to_value().to_string();
-        assert_eq!([10.0, -0.0, 0.25, 1.0e-4, 1.0e9].map(written), ["10", "0", "0.25", "0.0001", "1000000000"]);
+        assert_eq!(
+            [10.0, -0.0, 0.25, 1.0e-4, 1.0e9].map(written),
+            ["10", "0", "0.25", "0.0001", "1000000000"]
+        );
     }
 }

@@ -86,8 +86,8 @@ impl Field {
     #[must_use]
     pub fn label(&self) -> String {
         const ENDS: [&str; 16] = [
-            "_mm_h", "_m2_s", "_m3_s", "_m_s", "_per_m", "_um", "_mm", "_hpa", "_deg", "_lux", "_cd", "_ev", "_ms",
-            "_c", "_m", "_s",
+            "_mm_h", "_m2_s", "_m3_s", "_m_s", "_per_m", "_um", "_mm", "_hpa", "_deg", "_lux", "_cd", "_ev",
+            "_ms", "_c", "_m", "_s",
         ];
         let name = ENDS.iter().find_map(|end| self.key.strip_suffix(end)).unwrap_or(&self.key);
         name.replace('_', " ")

@@ -191,7 +191,8 @@ mod tests {
         for (kind, sign) in [("source", 1.0), ("sink", -1.0)] {
             let wires = model(&object(kind, 5.0), DVec3::ZERO);
             for arrow in wires.iter().filter(|wire| wire.is_arrow) {
-                let [begin, end] = [arrow.points[0], arrow.points[1]].map(|p| DVec3::new(p.x, 0.0, p.z).length());
+                let [begin, end] =
+                    [arrow.points[0], arrow.points[1]].map(|p| DVec3::new(p.x, 0.0, p.z).length());
                 assert!((end - begin) * sign > 0.0);
             }
         }

@@ -164,7 +164,8 @@ pub(super) fn set_entry_name(
 
 /// What stands before an entry, with the comment that names it in place of an older one. An entry within an array begins a line.
 fn named(prefix: &str, is_inline: bool, name: &str) -> String {
-    let mut lines: Vec<&str> = prefix.split('\n').filter(|line| !line.trim().starts_with(NAME_MARK)).collect();
+    let mut lines: Vec<&str> =
+        prefix.split('\n').filter(|line| !line.trim().starts_with(NAME_MARK)).collect();
     if name.is_empty() {
         return lines.join("\n");
     }

@@ -22,7 +22,9 @@ pub enum DocumentError {
         reason: String,
     },
     /// Another program has changed the file since it was read.
-    #[error("{path}: changed on disk by another program; allowed: reload it, or keep this one and save again")]
+    #[error(
+        "{path}: changed on disk by another program; allowed: reload it, or keep this one and save again"
+    )]
     ChangedOnDisk {
         /// The file.
         path: String,

@@ -94,7 +94,7 @@ impl PictureView {
 }
 
 /// Bins of a histogram.
-pub const BINS: usize = 64;
+pub(super) const BINS: usize = 64;
 
 /// Distribution of the brightness of pixels.
 #[derive(Clone, Debug, PartialEq)]
@@ -135,7 +135,8 @@ impl Drawn {
         let origin = (self.view.eye - self.stage.origin).as_vec3().to_array();
         let data = &self.stage.data;
         let direction = direction.as_vec3().to_array();
-        let hit = downpour::bvh::bvh_nearest(&data.nodes, &data.triangles, origin, direction, 0.0, f32::INFINITY);
+        let hit =
+            downpour::bvh::bvh_nearest(&data.nodes, &data.triangles, origin, direction, 0.0, f32::INFINITY);
         hit.map(|hit| f64::from(hit.distance))
     }
 

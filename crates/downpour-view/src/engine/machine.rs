@@ -123,8 +123,11 @@ impl Machine {
         self.renderer = None;
         let roots: Vec<&Path> = request.asset_roots.iter().map(std::path::PathBuf::as_path).collect();
         let loaded = load(&weather, &Roots::open(&request.place, &roots)?, &mut Budget::default())?;
-        let options =
-            RendererOptions { samples: request.samples, first_s: request.time_s, ..RendererOptions::default() };
+        let options = RendererOptions {
+            samples: request.samples,
+            first_s: request.time_s,
+            ..RendererOptions::default()
+        };
         let renderer = Renderer::new(weather.clone(), loaded, options, device)?;
         let (samples, place) = (request.samples, request.place.clone());
         self.renderer = Some(Ready { renderer, weather, samples, place });

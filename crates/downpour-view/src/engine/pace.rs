@@ -4,7 +4,7 @@
 pub const SCALES: [f64; 8] = [1.0, 0.75, 0.5, 0.375, 0.25, 0.1875, 0.125, 0.0625];
 
 /// Time in which pictures are to come while something moves, ms.
-pub const TARGET_MS: f64 = 1000.0 / 30.0;
+const TARGET_MS: f64 = 1000.0 / 30.0;
 
 /// Pictures in a row that must have time left before the next larger scale is tried.
 const PATIENCE: u32 = 6;

@@ -53,7 +53,8 @@ fn faults_are_answers_and_the_next_question_is_drawn() {
     let drawn = ask(RAIN).unwrap();
     assert_eq!((drawn.size, drawn.pixels.len()), ([32, 18], 32 * 18));
     assert!((drawn.view.eye.y - 2.0).abs() < 1.0e-9);
-    let no_adapter = Engine::start(DeviceChoice { backend: Backend::Gpu, adapter: Some("no such".into()) }).unwrap();
+    let no_adapter =
+        Engine::start(DeviceChoice { backend: Backend::Gpu, adapter: Some("no such".into()) }).unwrap();
     no_adapter.ask(request(RAIN, folder.path(), 1));
     assert!(no_adapter.wait(Duration::from_secs(60)));
     let fault = no_adapter.take().unwrap().unwrap_err();
