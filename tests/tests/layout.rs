@@ -26,6 +26,7 @@ use downpour_render::rain::profiles::ProfilesFrame;
 use downpour_render::rain::project::ProjectFrame;
 use downpour_render::rain::tiles::TilesFrame;
 use downpour_render::rain::{DropsDrop, DropsFrame, StreakPath, StreakRay};
+use downpour_render::tone::ToneFrame;
 use downpour_shaders::render::specimen;
 use downpour_shaders::{
     Module, atlas, bvh, common, compose, drop, lattice, mask, modules, render, sim, wind,
@@ -115,6 +116,8 @@ fn hosts() -> Vec<Host> {
         host!(ProfilesFrame as "ProfilesFrame" in &render::rain::PROFILES,
             count, max_rays, max_entries, first_entry, seed, amplitudes, medium, unused_1, unused_2, unused_3),
         host!(TilesFrame as "TilesFrame" in &render::rain::TILES, size, count, room),
+        host!(ToneFrame as "ToneFrame" in &render::tone::TONE,
+            width, height, curve, exposure, has_glow, pad_a, pad_b, pad_c),
         host!(GlowLevel as "GlowLevel" in &render::glow::GLOW,
             size, coarse, first, coarse_first, weight, coarse_weight, fraction, extinction, is_added, offset),
         host!(MediumFrame as "MediumFrame" in &render::medium::MEDIUM,

@@ -8,11 +8,13 @@ mod medium;
 mod plate;
 mod project;
 mod rain;
+mod refine;
 #[cfg(not(feature = "parity"))]
 pub(crate) mod tiles;
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 pub mod tiles;
+mod tone;
 
 pub use drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
 pub use glass::{BehindGlass, GlassRenderer};
@@ -22,3 +24,5 @@ pub use medium::{MediumPass, MediumPipeline};
 pub use plate::{LightingOnGpu, PlateOnGpu};
 pub use project::{FallingOnGpu, ProjectPass, ProjectPipeline};
 pub use rain::{RainOnGpu, RainPass, RainPipeline};
+pub use refine::{RefinePass, RefinePipeline};
+pub use tone::{TonePass, TonePipeline, TonedLayers};

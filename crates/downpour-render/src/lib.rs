@@ -29,6 +29,7 @@ pub mod path_lattice;
 pub mod picture;
 pub mod plate;
 pub mod rain;
+pub mod refine;
 pub mod tone;
 pub mod wind_picture;
 

@@ -1,4 +1,4 @@
-//! From scene-referred radiance to a picture.
+//! From scene-referred radiance to a picture. Twin of `shaders/wgsl/render/tone.wgsl`.
 //!
 //! Colors up to 0.8 less the toe stay as they are in both curves ([`ToneCurve`]), brighter ones are compressed: by [`tone_hue`], which keeps
 //! hues, or by the neutral tone mapper of Khronos (2024, [`tone_neutral`]). Exposure is a factor of 2 per stop; automatic exposure puts
@@ -9,14 +9,13 @@ mod hue;
 use std::sync::LazyLock;
 
 use downpour_math::ops;
+use downpour_shaders::render::tone::{TONE_DESATURATION, TONE_KEEPS_HUE, TONE_KHRONOS, TONE_START};
 use glam::Vec3;
 use rayon::prelude::*;
 
 pub use downpour_weather::ToneCurve;
-pub use hue::tone_hue;
+pub use hue::{tone_hue, tone_linear, tone_oklab, tone_whiteness, tone_with_hue, tone_within};
 
-const START: f32 = 0.8 - 0.04;
-const DESATURATION: f32 = 0.15;
 /// Middle gray.
 pub const GRAY: f32 = 0.18;
 
@@ -27,29 +26,31 @@ pub fn tone_luminance(color: Vec3) -> f32 {
 }
 
 /// A color of no channel below 0, less what a surface of gloss reflects of white surroundings.
-fn lifted(color: Vec3) -> Vec3 {
+#[must_use]
+pub fn tone_lifted(color: Vec3) -> Vec3 {
     let least = color.min_element();
     let offset = if least < 0.08 { least - 6.25 * least * least } else { 0.04 };
     color - Vec3::splat(offset)
 }
 
-/// Value of a largest channel from `START` on, below 1.
-fn compressed(peak: f32) -> f32 {
-    let d = 1.0 - START;
-    1.0 - d * d / (peak + d - START)
+/// Value of a largest channel from `TONE_START` on, below 1.
+#[must_use]
+pub fn tone_compressed(peak: f32) -> f32 {
+    let d = 1.0 - TONE_START;
+    1.0 - d * d / (peak + d - TONE_START)
 }
 
 /// Applies the neutral tone curve of Khronos; the result is in [0, 1].
 #[must_use]
 pub fn tone_neutral(color: Vec3) -> Vec3 {
-    let lifted = lifted(color.max(Vec3::ZERO));
+    let lifted = tone_lifted(color.max(Vec3::ZERO));
     let peak = lifted.max_element();
-    if peak < START {
+    if peak < TONE_START {
         return lifted;
     }
-    let new_peak = compressed(peak);
+    let new_peak = tone_compressed(peak);
     let scaled = lifted * (new_peak / peak);
-    let g = 1.0 - 1.0 / (DESATURATION * (peak - new_peak) + 1.0);
+    let g = 1.0 - 1.0 / (TONE_DESATURATION * (peak - new_peak) + 1.0);
     scaled.lerp(Vec3::splat(new_peak), g)
 }
 
@@ -114,6 +115,46 @@ impl Encoded {
         }
         value
     }
+}
+
+/// Number of a curve in shaders.
+#[must_use]
+pub fn tone_number(curve: ToneCurve) -> u32 {
+    match curve {
+        ToneCurve::KhronosNeutral => TONE_KHRONOS,
+        ToneCurve::Hue => TONE_KEEPS_HUE,
+    }
+}
+
+/// Constants of a picture to look at. The same layout as `ToneFrame` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct ToneFrame {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Curve, a [`tone_number`].
+    pub curve: u32,
+    /// Factor from radiance to display.
+    pub exposure: f32,
+    /// 1: there is glow.
+    pub has_glow: u32,
+    /// Nothing.
+    pub pad_a: u32,
+    /// Nothing.
+    pub pad_b: u32,
+    /// Nothing.
+    pub pad_c: u32,
+}
+
+/// A pixel of radiance as 8 bits each of red, green, blue and an alpha of 255, red lowest.
+#[must_use]
+pub fn tone_pixel(radiance: Vec3, exposure: f32, curve: u32) -> u32 {
+    let bright = radiance * exposure;
+    let toned = if curve == TONE_KEEPS_HUE { tone_hue(bright) } else { tone_neutral(bright) };
+    let [r, g, b] = toned.to_array().map(tone_srgb).map(u32::from);
+    r | g << 8 | b << 16 | 255 << 24
 }
 
 /// Converts linear radiance to an 8-bit picture.

@@ -10,7 +10,8 @@ use downpour_render::RenderError;
 use downpour_render::camera::{Camera, Viewpoint};
 use downpour_render::light::{Light, LightSource};
 use downpour_shaders::render::scene::{
-    SCENE_LIGHT_BODY, SCENE_LIGHT_ROWS, SCENE_PICTURE, SCENE_SKY_LEVELS, SKYLIGHT_RADIUS,
+    SCENE_LIGHT_BODY, SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_ROWS, SCENE_PICTURE, SCENE_SKY_LEVELS,
+    SKYLIGHT_RADIUS,
 };
 use glam::Vec3;
 
@@ -132,11 +133,17 @@ impl SceneData {
     /// Sets the lights, in place of those that are there; wetness, puddles and a pane, which come after them in the table, are
     /// removed.
     pub fn set_lights(&mut self, lights: &[LightSource]) {
-        self.table.truncate(self.lights as usize);
+        self.set_lights_from(0, lights);
+    }
+
+    /// Sets the lights behind the first `kept`, as [`SceneData::set_lights`] does all of them.
+    pub(crate) fn set_lights_from(&mut self, kept: u32, lights: &[LightSource]) {
+        let kept = kept.min(self.light_count);
+        self.table.truncate((self.lights + kept * SCENE_LIGHT_ROWS) as usize);
         for light in lights {
             self.table.extend(light.rows());
         }
-        self.light_count = lights.len() as u32;
+        self.light_count = kept + lights.len() as u32;
         (self.puddles, self.puddle_count, self.pane, self.wetness) = (0, 0, 0, 0);
     }
 
@@ -149,6 +156,28 @@ impl SceneData {
             *row = new;
         }
         (rows[0][3], rows[3][2]) = (kind, radius);
+    }
+
+    /// Rows of lights, each with its four.
+    pub(crate) fn light_rows(
+        &self,
+        lights: std::ops::Range<u32>,
+    ) -> Vec<[[u32; 4]; SCENE_LIGHT_ROWS as usize]> {
+        let row = |light: u32| (self.lights + light * SCENE_LIGHT_ROWS) as usize;
+        let rows = self.table.get(row(lights.start)..row(lights.end)).unwrap_or_default();
+        rows.as_chunks().0.to_vec()
+    }
+
+    /// Gives lamp `index` the glass in the model of the lamp that had these rows before, if it had some; a radius of its own stays.
+    pub(crate) fn keep_lamp_glass(&mut self, index: u32, before: &[[u32; 4]; SCENE_LIGHT_ROWS as usize]) {
+        let first = (self.lights + index * SCENE_LIGHT_ROWS) as usize;
+        let Some(rows) = self.table.get_mut(first..first + SCENE_LIGHT_ROWS as usize) else { return };
+        if before[0][3] == SCENE_LIGHT_BODY && rows[0][3] != SCENE_LIGHT_DIRECTIONAL {
+            rows[0][3] = SCENE_LIGHT_BODY;
+        }
+        if rows[3][2] == 0 && before[0][3] != SCENE_LIGHT_DIRECTIONAL {
+            rows[3][2] = before[3][2];
+        }
     }
 
     /// Says how large the glass of lamp `index` is, in meters, which is in the model and shines. That of a spot shines elsewhere, too.

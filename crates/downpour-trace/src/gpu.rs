@@ -6,6 +6,9 @@ mod plate;
 mod scene;
 
 pub use falling::{FieldDrops, FoundDrops, PictureDrops};
-pub use picture::{GpuPictureError, PictureOnGpu, PictureReadback, PictureRenderer};
+pub use picture::{
+    DisplayPicture, DisplayReadback, GpuPictureError, PictureOnGpu, PictureReadback, PictureRenderer,
+    PictureUse,
+};
 pub use plate::ScenePlate;
 pub use scene::{SceneOnGpu, ScenePass, ScenePipeline};

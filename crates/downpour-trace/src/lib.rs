@@ -31,6 +31,7 @@ mod emitter;
 pub mod emitter;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
+pub mod kept;
 pub mod material;
 pub mod pane_shadow;
 #[cfg(not(feature = "parity"))]

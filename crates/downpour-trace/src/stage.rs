@@ -21,7 +21,7 @@ use std::borrow::Cow;
 use downpour_scene::scene::{Play, Pose};
 use downpour_sim::field::FallingDrop;
 use downpour_sim::view::View;
-use downpour_weather::{self as weather, Loaded, Weather};
+use downpour_weather::{self as weather, Loaded, Reloaded, Weather};
 use glam::{DVec3, Vec3};
 
 use crate::builder::SceneBuilder;
@@ -85,6 +85,8 @@ pub struct Stage {
     pub instances: usize,
     /// Lamps, without the sun.
     pub lamps: usize,
+    /// True if the last of the lights is the sun.
+    pub has_sun: bool,
     /// Number of meshes left out because their transform has no inverse or is out of range.
     pub left_out: usize,
 }
@@ -141,6 +143,7 @@ impl Stage {
             triangles,
             instances: pose.instances.len(),
             lamps: pose.lights.len(),
+            has_sun: loaded.sun.is_some(),
             left_out: pose.left_out,
         })
     }
@@ -168,6 +171,48 @@ impl Stage {
         light::relight(&mut stage.data, weather, loaded, self.origin, time_s);
         stage.data.set_wetness(SceneWetness::of(weather, time_s, self.origin).as_ref());
         Ok(stage)
+    }
+
+    /// The same scene, which stands still, at a time in seconds in another weather over the same models: `before` is the weather of this
+    /// stage and `loaded` has the files of the new one. A new lamp has no glass in the model, and one that is moved keeps its own, until
+    /// the stage is built anew.
+    ///
+    /// # Errors
+    /// As [`Stage::seen_at`]; [`RenderError::Size`].
+    pub fn in_weather(
+        &self,
+        before: &Weather,
+        weather: &Weather,
+        loaded: &Loaded,
+        reloaded: Reloaded,
+        time_s: f64,
+    ) -> Result<Self, StageError> {
+        check_size(weather.size)?;
+        let mut stage = Self {
+            size: weather.size,
+            shutter_s: weather.camera.shutter,
+            exposure_ev: weather.camera.exposure_ev as f32,
+            ..self.clone()
+        };
+        let is_lit_alike = before.lights == weather.lights && before.keys == weather.keys;
+        if reloaded.sky || !is_lit_alike {
+            // A sun may have come or gone.
+            let others = before.lights.len() as u32 + u32::from(self.has_sun);
+            light::set_light(&mut stage.data, weather, loaded, reloaded.sky, others, self.origin);
+            stage.has_sun = loaded.sun.is_some();
+            stage.lamps = (self.lamps + weather.lights.len()).saturating_sub(before.lights.len());
+        }
+        let seen = CameraView::of(weather, loaded, &posed(loaded, time_s), time_s);
+        if seen.is_some() || weather.camera.near.is_some() || weather.camera.far.is_some() {
+            stage.depth = depth(weather, seen.as_ref());
+        }
+        if let Some(seen) = &seen {
+            stage.camera = seen.choice.clone();
+        }
+        if let Some(fov) = weather.camera.fov {
+            stage.viewpoint.fov_y = fov as f32;
+        }
+        stage.seen_at(weather, loaded, time_s)
     }
 
     /// The part of space that the picture shows, in the world, for [`RainField`](downpour_sim::field::RainField).

@@ -47,6 +47,9 @@ const SHIFT_M: f64 = 512.0;
 /// Rays per direction for the coat's reflectance, along both of their numbers.
 const COAT_RAYS: u16 = 48;
 
+/// Rows of a table that differ from time to time: those at [`SceneData::wetness`] that say how wet.
+pub(crate) const WET_ROWS_THAT_CHANGE: usize = 1;
+
 /// Wetness of the surfaces of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SceneWetness {

@@ -67,7 +67,7 @@ pub use lightning::{
     Flash, FlashExposure, FlashLight, Lightning, MAX_FLASHES, MAX_STROKES, MAX_STROKES_PER_SECOND, Storm,
     Stroke, StrokePulse,
 };
-pub use load::{Loaded, Roots, lamps_at, load};
+pub use load::{Loaded, Reloaded, Roots, lamps_at, load};
 pub use models::{Model, Repeat};
 pub use presets::PRESETS;
 pub use puddle::{MAX_ALL_PUDDLE_CELLS, MAX_PUDDLE_CELLS, Puddle, PuddleFill, PuddleShape};

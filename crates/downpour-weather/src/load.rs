@@ -60,6 +60,58 @@ impl Loaded {
     pub fn is_animated(&self) -> bool {
         self.animations.iter().any(Option::is_some)
     }
+
+    /// The files of another weather, where these are those of `before`: what both name in the same way is taken over, all else is read.
+    ///
+    /// # Errors
+    /// As [`load`].
+    pub fn reload(
+        &self,
+        before: &Weather,
+        weather: &Weather,
+        files: &dyn Files,
+        budget: &mut Budget,
+    ) -> Result<(Self, Reloaded), SceneError> {
+        let reloaded = Reloaded::between(before, weather, self.is_animated());
+        if reloaded.models {
+            return Ok((load(weather, files, budget)?, reloaded));
+        }
+        let mut remaining = *budget;
+        let mut loaded = Self { masks: masks(weather, files, &mut remaining)?, ..self.clone() };
+        if reloaded.sky {
+            let mut warnings = Warnings::default();
+            loaded.unscaled = None;
+            (loaded.sky, loaded.sun) =
+                lights_of_the_sky(weather, files, &mut remaining, &mut warnings, &mut loaded.unscaled)?;
+            loaded.warnings.extend(std::mem::take(&mut loaded.sky.warnings));
+            loaded.warnings.extend(warnings.finish());
+        }
+        if before.drop_model != weather.drop_model {
+            loaded.drop_model = drop_model(weather, files, &mut remaining)?;
+        }
+        *budget = remaining;
+        Ok((loaded, reloaded))
+    }
+}
+
+/// Parts of a weather's files that are not those of another one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Reloaded {
+    /// The models, and with them all else.
+    pub models: bool,
+    /// Sky and sun.
+    pub sky: bool,
+}
+
+impl Reloaded {
+    /// The parts in which two weathers differ.
+    fn between(before: &Weather, weather: &Weather, is_animated: bool) -> Self {
+        // Lamps are nodes of a scene that moves.
+        let models = before.models != weather.models || (is_animated && before.lights != weather.lights);
+        let scales = before.keys.has_sky() || weather.keys.has_sky();
+        let sky = models || scales || before.sky != weather.sky || before.sun != weather.sun;
+        Self { models, sky }
+    }
 }
 
 /// Folders in which the files of a weather are searched, in this order: its folder, then asset roots.

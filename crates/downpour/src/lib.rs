@@ -65,8 +65,8 @@ pub mod shower;
 #[cfg(feature = "wgpu")]
 pub use rain::{PlateTextures, Rain, RainError, RainSettings, RainView};
 pub use renderer::{
-    Backend, Computer, Device, Frame, PendingFrame, PixelDrop, Progress, Renderer, RendererError,
-    RendererOptions, Source, Truth,
+    Backend, Computer, Device, DisplayFrame, Frame, PendingDisplay, PendingFrame, PixelDrop, Progress,
+    Renderer, RendererError, RendererOptions, Source, Truth,
 };
 
 pub use downpour_atlas as atlas;

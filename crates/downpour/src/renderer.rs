@@ -1,12 +1,14 @@
 //! A weather file in, frames out: one pipeline for a picture, a clip, a window and a program of your own.
 
 mod computer;
+mod display;
 mod drops;
 mod error;
 mod flash;
 mod frame;
 #[cfg(feature = "wgpu")]
 mod on_gpu;
+mod set_weather;
 mod shower_of_model;
 mod source;
 mod truth;
@@ -35,6 +37,7 @@ use downpour_weather::{CameraPath, Loaded, StreakLook, Weather};
 
 pub use computer::{Backend, Computer, Device};
 use computer::{Drawer, Painted, Through};
+pub use display::{DisplayFrame, PendingDisplay};
 use drops::Drops;
 pub use error::RendererError;
 pub use frame::{Frame, PendingFrame};
@@ -59,6 +62,10 @@ pub struct RendererOptions {
     pub truth: bool,
     /// Time of the first frame, s: puddles and panes have been rained on for a while by then.
     pub first_s: f64,
+    /// Frames of rays over which the picture of a scene without its rain is refined while neither scene nor camera moves, from frame to
+    /// frame; then it stays, and a frame costs its rain alone. 0: each frame has a picture of its own, and does not depend on those
+    /// before it.
+    pub kept_frames: u32,
 }
 
 impl Default for RendererOptions {
@@ -72,6 +79,7 @@ impl Default for RendererOptions {
             measure: false,
             truth: false,
             first_s: 0.0,
+            kept_frames: 0,
         }
     }
 }
@@ -97,6 +105,8 @@ pub struct Renderer {
     /// The scene at the first time.
     first: Stage,
     masks: Arc<DropMasks>,
+    /// The streak atlas that was given, also where the weather takes no streaks from it.
+    atlas: Option<StreakAtlas>,
     drawer: Drawer,
     shower: Shower,
     water: Option<Water>,
@@ -149,12 +159,11 @@ impl Renderer {
         device: Device,
     ) -> Result<Self, RendererError> {
         check_size(weather.size)?;
-        options.atlas = atlas_of(&weather, options.atlas)?;
+        let atlas = options.atlas.take();
+        options.atlas = atlas_of(&weather, atlas.clone())?;
         let first = Stage::new(&weather, &loaded, options.first_s)?;
         let mut shower = Shower::new(&weather)?;
-        let masks = DropMasks::of_weather(&weather, &loaded)?;
-        let masks = if shower.has_splashes() { masks.with_splashes_of(&weather)? } else { masks };
-        let masks = if let Some(atlas) = &options.atlas { masks.with_atlas(atlas) } else { masks };
+        let masks = set_weather::masks(&weather, &loaded, &shower, &options)?;
         if !loaded.is_animated() {
             // The files have become buffers.
             loaded.scene = Scene::default();
@@ -167,7 +176,8 @@ impl Renderer {
             loaded,
             options,
             first,
-            masks: Arc::new(masks),
+            masks,
+            atlas,
             drawer,
             shower,
             water: None,
@@ -284,14 +294,15 @@ impl Renderer {
         told(Progress { what: "drawing", parts: [0; 2] });
         // The first picture says whether the device can draw it, and how bright all are.
         let waits = self.drawn == 0 || self.exposure.is_none();
+        let kept_frames = self.options.kept_frames;
         let mut medium = self.shower.medium(&stage, drops.resolved(), &self.masks, time_s)?;
         let options = self.picture_options(&stage, time_s, medium);
-        let picture = match self.draw(&stage, &drops, &options, waits) {
+        let picture = match self.draw(&stage, &drops, &options, kept_frames, waits) {
             Err(error) if self.drawn == 0 && self.drawer.falls_back(&error) => {
                 drops = self.drops(&stage, time_s, told)?;
                 medium = self.shower.medium(&stage, drops.resolved(), &self.masks, time_s)?;
                 let options = self.picture_options(&stage, time_s, medium);
-                self.draw(&stage, &drops, &options, waits)?
+                self.draw(&stage, &drops, &options, kept_frames, waits)?
             }
             drawn => drawn?,
         };
@@ -435,12 +446,13 @@ impl Renderer {
         self.options.refraction.unwrap_or_else(|| self.weather.rain.refraction.into())
     }
 
-    /// Draws a frame, seen through the pane if there is one, and waits for it if asked to.
+    /// Draws a frame, seen through the pane if there is one, and waits for it if asked to. The plate is kept for so many frames of rays.
     fn draw(
         &self,
         stage: &Stage,
         drops: &Drops,
         options: &PictureOptions,
+        kept_frames: u32,
         waits: bool,
     ) -> Result<Painted, RendererError> {
         let pane = self.water.as_ref().and_then(|water| water.pane.as_ref());
@@ -448,7 +460,7 @@ impl Renderer {
         // What is seen through a pane glows when that is known.
         let behind = PictureOptions { glow: Glow::default(), ..*options };
         let drawn = if through.is_some() { &behind } else { options };
-        let painted = self.drawer.paint(stage, drops, &self.masks, drawn, through.as_ref())?;
+        let painted = self.drawer.paint(kept_frames, stage, drops, &self.masks, drawn, through.as_ref())?;
         if waits { painted.wait() } else { Ok(painted) }
     }
 }

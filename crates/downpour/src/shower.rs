@@ -103,6 +103,20 @@ impl Shower {
         Self { dripping: other.dripping.clone(), ..self }
     }
 
+    /// Goes on from the rain of another weather over the same scene: the drops that are there step by step stay, in the new wind and
+    /// before the new camera; the drip points stay where the same rain drips in the same way.
+    pub(crate) fn going_on_from(mut self, other: &Self) -> Self {
+        let (weather, before) = (&self.weather, &other.weather);
+        let rains_alike = weather.rain == before.rain && weather.keys.rate() == before.keys.rate();
+        if let (Form::Stepped(stepped), Form::Stepped(before), true) =
+            (&mut self.form, &other.form, rains_alike)
+        {
+            stepped.go_on_from(before);
+        }
+        let drips_alike = rains_alike && weather.drips == before.drips && weather.wetness == before.wetness;
+        if drips_alike && weather.wind == before.wind { self.with_drips_of(other) } else { self }
+    }
+
     /// Drops that drip, as a picture shows them.
     fn drips(
         &self,

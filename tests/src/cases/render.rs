@@ -2,16 +2,26 @@
 
 mod glow;
 mod project;
+mod refine;
 mod specimen;
 mod streak;
 mod tiles;
+mod tone;
 
 use crate::{FunctionCase, KernelCase};
 
 /// The cases.
 #[must_use]
 pub(super) fn functions() -> Vec<FunctionCase> {
-    [project::functions(), specimen::functions(), streak::functions(), tiles::functions()].concat()
+    [
+        project::functions(),
+        refine::functions(),
+        specimen::functions(),
+        streak::functions(),
+        tiles::functions(),
+        tone::functions(),
+    ]
+    .concat()
 }
 
 /// The cases.
@@ -20,8 +30,10 @@ pub(super) fn kernels() -> Vec<KernelCase> {
     glow::kernels()
         .into_iter()
         .chain(project::kernels())
+        .chain(refine::kernels())
         .chain(specimen::kernels())
         .chain(streak::kernels())
         .chain(tiles::kernels())
+        .chain(tone::kernels())
         .collect()
 }

@@ -6,14 +6,10 @@
 //! pink. Neutral colors and all below the shoulder have the values of [`tone_neutral`].
 
 use downpour_math::ops;
+use downpour_shaders::render::tone::{TONE_HALF_WHITE_STOPS, TONE_MAX_CHANNEL, TONE_START};
 use glam::{Mat3, Vec2, Vec3};
 
-use super::{START, compressed, lifted, tone_luminance, tone_neutral};
-
-/// Stops over the shoulder at which a color is half white.
-const HALF_WHITE_STOPS: f32 = 6.0;
-/// Largest channel; radiance beyond it is white in any case.
-const MAX_CHANNEL: f32 = 1.0e12;
+use super::{tone_compressed, tone_lifted, tone_luminance, tone_neutral};
 
 /// Linear BT.709 to the cone responses of Oklab.
 const CONES: Mat3 = Mat3::from_cols_array(&[
@@ -65,20 +61,23 @@ const PRIMARIES: Mat3 = Mat3::from_cols_array(&[
 ]);
 
 /// Oklab of a linear color: lightness, green-red, blue-yellow.
-pub(super) fn oklab(color: Vec3) -> Vec3 {
+#[must_use]
+pub fn tone_oklab(color: Vec3) -> Vec3 {
     let [l, m, s] = (CONES * color).to_array().map(ops::cbrt);
     OPPONENT * Vec3::new(l, m, s)
 }
 
 /// Linear color of an Oklab color.
-fn linear(lab: Vec3) -> Vec3 {
+#[must_use]
+pub fn tone_linear(lab: Vec3) -> Vec3 {
     let roots = CONE_ROOTS * lab;
     PRIMARIES * (roots * roots * roots)
 }
 
 /// A color within the display: one that is not is mixed with gray of its luminance, as little as that takes. So there are no steps,
 /// even where the display's colors of a hue have a dent.
-fn within(color: Vec3) -> Vec3 {
+#[must_use]
+pub fn tone_within(color: Vec3) -> Vec3 {
     let gray = tone_luminance(color).clamp(0.0, 1.0);
     let (low, high) = (color.min_element(), color.max_element());
     let below = if low < 0.0 { gray / (gray - low) } else { 1.0 };
@@ -87,22 +86,24 @@ fn within(color: Vec3) -> Vec3 {
 }
 
 /// Fraction of white in a color whose largest channel is `peak`.
-fn whiteness(peak: f32) -> f32 {
-    let stops = ops::log2(peak / START) / HALF_WHITE_STOPS;
+#[must_use]
+pub fn tone_whiteness(peak: f32) -> f32 {
+    let stops = ops::log2(peak / TONE_START) / TONE_HALF_WHITE_STOPS;
     let cube = stops * stops * stops;
     cube / (cube + 1.0)
 }
 
 /// A color of the lightness and chroma of `color` and the hue of `like`, both linear; paler where the display has none so strong.
-fn with_hue_of(color: Vec3, like: Vec3) -> Vec3 {
-    let (lab, wanted) = (oklab(color), oklab(like));
+#[must_use]
+pub fn tone_with_hue(color: Vec3, like: Vec3) -> Vec3 {
+    let (lab, wanted) = (tone_oklab(color), tone_oklab(like));
     let chroma = ops::hypot(lab.y, lab.z);
     let strength = ops::hypot(wanted.y, wanted.z);
     if strength < 1.0e-5 {
         return color;
     }
     let turned = Vec2::new(wanted.y, wanted.z) * (chroma / strength);
-    within(linear(Vec3::new(lab.x, turned.x, turned.y)))
+    tone_within(tone_linear(Vec3::new(lab.x, turned.x, turned.y)))
 }
 
 /// Applies the tone curve that keeps hues in Oklab; the result is in [0, 1]. Equal channels, and colors below the shoulder, become what
@@ -113,15 +114,15 @@ pub fn tone_hue(color: Vec3) -> Vec3 {
     if color.max_element() <= color.min_element() {
         return tone_neutral(color);
     }
-    let lifted = lifted(color.min(Vec3::splat(MAX_CHANNEL)));
+    let lifted = tone_lifted(color.min(Vec3::splat(TONE_MAX_CHANNEL)));
     let peak = lifted.max_element();
-    if peak < START {
+    if peak < TONE_START {
         return lifted;
     }
-    let most = compressed(peak);
+    let most = tone_compressed(peak);
     let scaled = lifted * (most / peak);
-    let toned = scaled.lerp(Vec3::splat(most), whiteness(peak));
-    with_hue_of(toned, scaled)
+    let toned = scaled.lerp(Vec3::splat(most), tone_whiteness(peak));
+    tone_with_hue(toned, scaled)
 }
 
 #[cfg(test)]

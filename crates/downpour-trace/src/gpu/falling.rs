@@ -45,6 +45,8 @@ pub struct FoundDrops {
 #[derive(Debug)]
 pub(super) struct FoundReadback {
     read: Readback,
+    /// True if the list itself is not read.
+    is_counted: bool,
     places: u32,
     known: u32,
     room: u32,
@@ -73,22 +75,38 @@ impl FieldDrops<'_> {
 }
 
 impl FoundReadback {
-    /// Begins to read what a pass has found.
-    pub(super) fn begin(gpu: &Gpu, pool: &ReadbackPool, pass: &FieldPass<'_>) -> Result<Self, GpuError> {
-        let buffers: [&wgpu::Buffer; 2] = [pass.drops(), pass.counts()];
+    /// Begins to read what a pass has found, or no more than how many drops it has looked at.
+    pub(super) fn begin(
+        gpu: &Gpu,
+        pool: &ReadbackPool,
+        pass: &FieldPass<'_>,
+        is_counted: bool,
+    ) -> Result<Self, GpuError> {
+        let buffers: [&wgpu::Buffer; 2] = [pass.counts(), pass.drops()];
+        let read = pool.begin(gpu, if is_counted { &buffers[..1] } else { &buffers })?;
         let (places, room) = (pass.places(), pass.room());
-        Ok(Self { read: pool.begin(gpu, &buffers)?, places, known: places - room, room })
+        Ok(Self { read, is_counted, places, known: places - room, room })
     }
 
-    /// Waits for the drops; `distances` of all places become those of the drops that are left.
-    pub(super) fn finish(mut self, distances: &mut Vec<f32>) -> Result<FoundDrops, GpuPictureError> {
+    /// Waits for the number of drops that were looked at.
+    pub(super) fn simulated(mut self) -> Result<u64, GpuPictureError> {
+        self.counts()
+    }
+
+    fn counts(&mut self) -> Result<u64, GpuPictureError> {
         self.read.wait()?;
-        let drops = self.read.take::<EyeDrop>(0)?;
-        let counts = self.read.take::<u32>(1)?;
+        let counts = self.read.take::<u32>(0)?;
         let [found, simulated] = [0, 1].map(|k| counts.get(k).copied().unwrap_or_default());
         if found > self.room {
             return Err(GpuPictureError::NoRoom { found, room: self.room });
         }
+        Ok(simulated.into())
+    }
+
+    /// Waits for the drops; `distances` of all places become those of the drops that are left.
+    pub(super) fn finish(mut self, distances: &mut Vec<f32>) -> Result<FoundDrops, GpuPictureError> {
+        let simulated = self.counts()?;
+        let drops = if self.is_counted { Vec::new() } else { self.read.take::<EyeDrop>(1)? };
         let mut places: Vec<u32> = (0..self.places.min(drops.len() as u32))
             .filter(|&place| drops[place as usize].diameter > 0.0)
             .collect();
@@ -101,6 +119,6 @@ impl FoundReadback {
         *distances = places.iter().filter_map(|&place| distances.get(place as usize).copied()).collect();
         let known = |place: u32| (place < self.known).then_some(place);
         let drops = places.iter().map(|&place| (drops[place as usize], known(place))).collect();
-        Ok(FoundDrops { drops, simulated: simulated.into() })
+        Ok(FoundDrops { drops, simulated })
     }
 }

@@ -14,14 +14,19 @@ use downpour_sim::gpu::{FieldOnGpu, FieldPipeline, GpuSimError};
 use rayon::prelude::*;
 
 use downpour_render::RenderError;
-use downpour_render::camera::Viewpoint;
-use downpour_render::gpu::{BehindGlass, FallingOnGpu, GlowPipeline, RainOnGpu, RainPipeline};
+use downpour_render::camera::{Camera, Viewpoint};
+use downpour_render::gpu::{
+    BehindGlass, FallingOnGpu, GlowPipeline, RainOnGpu, RainPipeline, RefinePipeline, TonePipeline,
+    TonedLayers,
+};
 use downpour_render::picture::{DeviceUse, Picture, PictureOptions};
 use downpour_render::rain::{DropMasks, Rain};
+use downpour_render::tone::ToneCurve;
 
 use super::falling::{FoundDrops, FoundReadback, PictureDrops};
 use super::scene::{SceneOnGpu, ScenePipeline};
 use crate::data::{RenderFrame, SceneData};
+use crate::kept::KeptPlate;
 use crate::picture::picture_frame;
 use crate::scene::SceneView;
 
@@ -60,7 +65,8 @@ impl From<GpuSimError> for GpuPictureError {
 }
 
 /// Labels of the buffers that a picture keeps.
-const GIVEN_AWAY: [&str; 5] = ["picture", "rain", "environment map", "distances of drops", "glow"];
+const GIVEN_AWAY: [&str; 6] =
+    ["picture", "rain", "environment map", "distances of drops", "glow", "display picture"];
 
 /// Room for passes that are timed by the device.
 const MAX_PASSES: u32 = 32;
@@ -72,6 +78,8 @@ pub struct PictureRenderer {
     scene: ScenePipeline,
     rain: RainPipeline,
     glow: GlowPipeline,
+    refine: RefinePipeline,
+    tone: TonePipeline,
     fields: FieldPipeline,
     pool: Arc<BufferPool>,
     /// Locked for as long as a picture is drawn with the pool's buffers.
@@ -83,6 +91,25 @@ pub struct PictureRenderer {
     pace: Arc<Mutex<Option<f64>>>,
     /// The scene and the masks of the last picture.
     uploaded: Arc<Mutex<Option<(SceneOnGpu, RainOnGpu)>>>,
+    /// The plate of the last picture, if it was to be kept.
+    plate: Arc<Mutex<Option<KeptPlate<PlateBuffers>>>>,
+}
+
+/// Use of a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PictureUse {
+    /// Frames of rays over which the plate of a scene that stands still is refined from picture to picture ([`KeptPlate`]); 0: each
+    /// picture has one of its own.
+    pub kept_frames: u32,
+    /// Exposure and curve of a picture that is only displayed: [`PictureOnGpu::begin_display`].
+    pub tone: Option<(f32, ToneCurve)>,
+}
+
+/// Buffers of a plate that stays.
+#[derive(Clone, Debug)]
+struct PlateBuffers {
+    mean: wgpu::Buffer,
+    environment: wgpu::Buffer,
 }
 
 impl PictureRenderer {
@@ -96,6 +123,8 @@ impl PictureRenderer {
             scene: ScenePipeline::new(gpu)?,
             rain: RainPipeline::new(gpu)?,
             glow: GlowPipeline::new(gpu)?,
+            refine: RefinePipeline::new(gpu)?,
+            tone: TonePipeline::new(gpu)?,
             fields: FieldPipeline::new(gpu)?,
             // A picture may be read after the next one is begun.
             pool: Arc::new(BufferPool::new(gpu).with_given_away(&GIVEN_AWAY)),
@@ -104,6 +133,7 @@ impl PictureRenderer {
             frequencies: Arc::default(),
             pace: Arc::default(),
             uploaded: Arc::default(),
+            plate: Arc::default(),
         })
     }
 
@@ -148,6 +178,22 @@ impl PictureRenderer {
         masks: &DropMasks,
         options: &PictureOptions,
     ) -> Result<PictureOnGpu, GpuPictureError> {
+        self.draw_for(PictureUse::default(), scene, viewpoint, drops, masks, options)
+    }
+
+    /// Renders a picture for a use and leaves it on the device.
+    ///
+    /// # Errors
+    /// As [`PictureRenderer::render`].
+    pub fn draw_for(
+        &self,
+        of: PictureUse,
+        scene: &SceneData,
+        viewpoint: &Viewpoint,
+        drops: PictureDrops<'_>,
+        masks: &DropMasks,
+        options: &PictureOptions,
+    ) -> Result<PictureOnGpu, GpuPictureError> {
         let frame = picture_frame(scene, viewpoint, options)?;
         if self.gpu.adapter().is_software() {
             check_turns(&frame)?;
@@ -167,15 +213,51 @@ impl PictureRenderer {
         pool.begin_frame();
         let made_before = pool.made();
         let pace = *self.pace.lock().unwrap_or_else(PoisonError::into_inner);
-        let traced = self.scene.prepare_paced(pool, &uploaded.0, &frame, pace)?;
-        passes.run_each("scene", &traced.rays())?;
-        passes.run_each("skylight", &traced.filters())?;
-        let clean = traced.picture().clone();
         let eye = viewpoint.eye.as_dvec3();
         let camera = frame.camera;
         // The drops are put on the picture by the device.
         let rain = Rain::new(&camera, eye, &[], masks, &options.rain);
-        let plate = self.scene.plate(pool, &uploaded.0, &frame, &self.rain, &rain)?;
+        let mut kept = self.plate.lock().unwrap_or_else(PoisonError::into_inner);
+        // After an error there is none. Pictures that keep none leave that of others alone.
+        let last = if of.kept_frames > 0 { kept.take() } else { None };
+        let known = last.filter(|plate| plate.shows(scene, &frame, &rain.environment));
+        let is_known = known.is_some();
+        let mut stays = match (of.kept_frames, known) {
+            (0, _) => None,
+            (_, Some(known)) => Some(known),
+            (_, None) => {
+                let buffers = self.plate_buffers(&camera, &rain)?;
+                Some(KeptPlate::new(scene, &frame, &rain.environment, buffers))
+            }
+        };
+        let next = match stays.as_mut() {
+            Some(plate) => plate.next(&frame, of.kept_frames),
+            None => Some((frame, 1)),
+        };
+        // Buffers that are given back when the picture has been read.
+        let mut layers: Vec<(&'static str, wgpu::Buffer)> = Vec::new();
+        let mut clean = stays.as_ref().map(|plate| plate.held.mean.clone());
+        if let Some((frame, count)) = next {
+            let traced = self.scene.prepare_paced(pool, &uploaded.0, &frame, pace)?;
+            passes.run_each("scene", &traced.rays())?;
+            passes.run_each("skylight", &traced.filters())?;
+            if let Some(mean) = &clean {
+                let more = self.refine.prepare(pool, camera.size(), count, traced.picture(), mean)?;
+                passes.run("refine", &[more.dispatch()])?;
+            }
+            layers.push(("picture", traced.picture().clone()));
+            clean.get_or_insert(traced.picture().clone());
+        }
+        let clean = clean.expect("a plate that is not kept is traced");
+        let environment = match stays.as_ref() {
+            Some(plate) => (plate.held.environment.clone(), is_known),
+            None => {
+                let made = self.rain.environment(pool, &rain)?;
+                layers.push(("environment map", made.clone()));
+                (made, false)
+            }
+        };
+        let plate = self.scene.plate_around(pool, &uploaded.0, &frame, &rain, environment)?;
         let (falling, count, search) = passes.host("drops to the device", || match drops {
             PictureDrops::Listed(drops) => {
                 let falling: Vec<EyeDrop> = drops.par_iter().map(|drop| EyeDrop::new(drop, eye)).collect();
@@ -193,7 +275,10 @@ impl PictureRenderer {
         let of_masks = (&uploaded.1, masks);
         let of_rain = (&rain, &options.rain);
         let pass = self.rain.prepare_falling(pool, &plate.of(&clean), of_masks, of_rain, &lights, falling)?;
-        passes.run("capture", &plate.dispatches(&pass))?;
+        let captured = plate.dispatches(&pass);
+        if !captured.is_empty() {
+            passes.run("capture", &captured)?;
+        }
         if let Some(search) = &search {
             passes.run("search", &search.dispatches())?;
         }
@@ -213,10 +298,29 @@ impl PictureRenderer {
             passes.run("glow", &glow.dispatches())?;
         }
         let glow = glow.map(|pass| pass.target().clone());
+        let pixels = match of.tone {
+            Some((exposure, curve)) => {
+                let seen =
+                    TonedLayers { size: camera.size(), plate: &clean, rain: &layer, glow: glow.as_ref() };
+                let toned = self.tone.prepare(pool, seen, exposure, curve)?;
+                passes.run("tone", &[toned.dispatch()])?;
+                Some(toned.target().clone())
+            }
+            None => None,
+        };
         let (times, ticks) = passes.end()?;
         // The next picture may write the list.
-        let found =
-            search.map(|search| FoundReadback::begin(&self.gpu, &self.readbacks, &search)).transpose()?;
+        let is_displayed = pixels.is_some();
+        let begin = |search| FoundReadback::begin(&self.gpu, &self.readbacks, &search, is_displayed);
+        let found = search.map(begin).transpose()?;
+        layers.push(("rain", layer.clone()));
+        layers.push(("distances of drops", distances.clone()));
+        layers.extend(glow.iter().map(|glow| ("glow", glow.clone())));
+        layers.extend(pixels.iter().map(|pixels| ("display picture", pixels.clone())));
+        if stays.is_some() {
+            *kept = stays;
+        }
+        drop(kept);
         let device = DeviceUse { bytes_uploaded: pool.written(), buffers_made: pool.made() - made_before };
         Ok(PictureOnGpu {
             gpu: self.gpu.clone(),
@@ -232,11 +336,20 @@ impl PictureRenderer {
             layer,
             glow,
             environment,
+            pixels,
+            layers,
             times,
             ticks,
             device,
             passes: Vec::new(),
         })
+    }
+
+    /// Buffers of a plate that stays, for a picture and its rain.
+    fn plate_buffers(&self, camera: &Camera, rain: &Rain) -> Result<PlateBuffers, GpuError> {
+        let pixels = u64::from(camera.width) * u64::from(camera.height);
+        let mean = self.gpu.empty_buffer("mean of pictures", 16 * pixels, wgpu::BufferUsages::STORAGE)?;
+        Ok(PlateBuffers { mean, environment: self.rain.environment(&self.gpu, rain)? })
     }
 
     /// Frequencies of drops in some fluids on the device: those of the last picture, if they are the same.
@@ -267,6 +380,10 @@ pub struct PictureOnGpu {
     layer: wgpu::Buffer,
     glow: Option<wgpu::Buffer>,
     environment: wgpu::Buffer,
+    /// The picture for a display, if it was asked for.
+    pixels: Option<wgpu::Buffer>,
+    /// Buffers that are given back, with their labels.
+    layers: Vec<(&'static str, wgpu::Buffer)>,
     times: FrameTimes,
     ticks: Option<wgpu::Buffer>,
     device: DeviceUse,
@@ -309,11 +426,7 @@ impl PictureOnGpu {
         buffers.extend(&self.ticks);
         let read = self.readbacks.begin(&self.gpu, &buffers)?;
         let (has_ticks, has_glow) = (self.ticks.is_some(), self.glow.is_some());
-        // What writes them next is submitted after the copies.
-        let layers = [self.clean, self.layer, self.environment, self.distances];
-        for (label, buffer) in GIVEN_AWAY.into_iter().zip(layers.into_iter().chain(self.glow)) {
-            pool.give_back(label, buffer);
-        }
+        give_back(&pool, self.layers);
         Ok(PictureReadback {
             pace,
             samples,
@@ -327,6 +440,30 @@ impl PictureOnGpu {
             device,
             passes,
         })
+    }
+
+    /// Begins to read the picture for a display, without its layers and its drops; without waiting for the device.
+    /// `None` if none was asked for.
+    ///
+    /// # Errors
+    /// Returns the error of the GPU.
+    pub fn begin_display(self) -> Result<Option<DisplayReadback>, GpuError> {
+        let Some(pixels) = &self.pixels else { return Ok(None) };
+        let mut buffers = vec![&self.distances, pixels];
+        buffers.extend(&self.ticks);
+        let read = self.readbacks.begin(&self.gpu, &buffers)?;
+        give_back(&self.pool, self.layers);
+        Ok(Some(DisplayReadback {
+            size: self.rain.frame.camera.size(),
+            pace: self.pace,
+            samples: self.samples,
+            count: self.count,
+            found: self.found,
+            read,
+            times: self.times,
+            has_ticks: self.ticks.is_some(),
+            device: self.device,
+        }))
     }
 
     /// Reads the picture back.
@@ -356,13 +493,87 @@ impl PictureReadback {
         let glow = if has_glow { read.take(4)? } else { Vec::new() };
         let ticks = 4 + usize::from(has_glow);
         let mut passes = times.read(&if has_ticks { read.take(ticks)? } else { Vec::new() });
-        if has_ticks && let Some((_, ms)) = passes.iter().find(|(name, _)| *name == "scene") {
-            *pace.lock().unwrap_or_else(PoisonError::into_inner) = Some(ms / samples);
-        }
+        note_pace(&pace, &passes, samples, has_ticks);
         passes.extend(others);
         passes.push(("readback", begin.elapsed().as_secs_f64() * 1.0e3));
         let picture = Picture::new(&rain, clean, layer, environment, passes).with_seen(&distances);
         Ok((Picture { device: Some(device), glow, ..picture }, found))
+    }
+}
+
+/// Gives buffers back to a pool: what writes them next is submitted after the copies.
+fn give_back(pool: &BufferPool, layers: Vec<(&'static str, wgpu::Buffer)>) {
+    for (label, buffer) in layers {
+        pool.give_back(label, buffer);
+    }
+}
+
+/// A picture for a display on its way from the device.
+#[derive(Debug)]
+pub struct DisplayReadback {
+    size: [u32; 2],
+    pace: Arc<Mutex<Option<f64>>>,
+    samples: f64,
+    count: usize,
+    found: Option<FoundReadback>,
+    read: Readback,
+    times: FrameTimes,
+    has_ticks: bool,
+    device: DeviceUse,
+}
+
+/// A picture for a display.
+#[derive(Clone, Debug)]
+pub struct DisplayPicture {
+    /// Columns and rows.
+    pub size: [u32; 2],
+    /// Red, green, blue, alpha of each pixel in sRGB, rows from the top.
+    pub pixels: Vec<[u8; 4]>,
+    /// Drops that were looked at.
+    pub drops_simulated: u64,
+    /// Drops whose outline touches the picture.
+    pub drops_on_screen: usize,
+    /// Those of them that the scene does not hide altogether.
+    pub drops_drawn: usize,
+    /// The passes in their order, with the milliseconds that each took.
+    pub passes: Vec<(&'static str, f64)>,
+    /// Use of the device that drew it; `None` on the CPU.
+    pub device: Option<DeviceUse>,
+}
+
+impl DisplayReadback {
+    /// Waits for the picture.
+    ///
+    /// # Errors
+    /// As [`PictureReadback::finish`].
+    pub fn finish(self) -> Result<DisplayPicture, GpuPictureError> {
+        let Self { size, pace, samples, count, found, mut read, times, has_ticks, device } = self;
+        read.wait()?;
+        let mut distances = read.take::<f32>(0)?;
+        distances.truncate(count);
+        let drops_simulated = match found {
+            Some(found) => found.simulated()?,
+            None => count as u64,
+        };
+        let pixels = read.take(1)?;
+        let passes = times.read(&if has_ticks { read.take(2)? } else { Vec::new() });
+        note_pace(&pace, &passes, samples, has_ticks);
+        Ok(DisplayPicture {
+            size,
+            pixels,
+            drops_simulated,
+            drops_on_screen: distances.iter().filter(|at| **at >= 0.0).count(),
+            drops_drawn: distances.iter().filter(|at| **at > 0.0).count(),
+            passes,
+            device: Some(device),
+        })
+    }
+}
+
+/// Notes how long a sample of the scene takes, ms.
+fn note_pace(pace: &Mutex<Option<f64>>, passes: &[(&'static str, f64)], samples: f64, has_ticks: bool) {
+    if has_ticks && let Some((_, ms)) = passes.iter().find(|(name, _)| *name == "scene") {
+        *pace.lock().unwrap_or_else(PoisonError::into_inner) = Some(ms / samples);
     }
 }
 

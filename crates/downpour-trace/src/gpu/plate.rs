@@ -15,6 +15,8 @@ pub struct ScenePlate<'a> {
     tracer: &'a ComputeKernel,
     bindings: wgpu::BindGroup,
     groups: u32,
+    /// True if the environment map is there already.
+    is_kept: bool,
     environment: wgpu::Buffer,
     lighting: LightingOnGpu,
 }
@@ -32,7 +34,18 @@ impl ScenePipeline {
         rains: &RainPipeline,
         rain: &Rain,
     ) -> Result<ScenePlate<'_>, GpuError> {
-        let environment = rains.environment(buffers, rain)?;
+        self.plate_around(buffers, scene, frame, rain, (rains.environment(buffers, rain)?, false))
+    }
+
+    /// The same with an environment map, which is there already or is to be traced into this buffer.
+    pub(super) fn plate_around(
+        &self,
+        buffers: &impl BufferSource,
+        scene: &SceneOnGpu,
+        frame: &RenderFrame,
+        rain: &Rain,
+        (environment, is_kept): (wgpu::Buffer, bool),
+    ) -> Result<ScenePlate<'_>, GpuError> {
         let of_map = environment_frame(frame, &rain.environment);
         let uniform = buffers.uniform("frame of the environment map", &of_map)?;
         // An environment map has no filter: nothing is written there.
@@ -40,7 +53,8 @@ impl ScenePipeline {
         let tracer = self.tracer(&of_map)?;
         let bindings = tracer.bind(self.gpu(), &scene.buffers(&uniform, &environment, &nothing))?;
         let lighting = scene.lighting(buffers, frame)?;
-        Ok(ScenePlate { tracer, bindings, groups: of_map.camera.width.div_ceil(8), environment, lighting })
+        let groups = of_map.camera.width.div_ceil(8);
+        Ok(ScenePlate { tracer, bindings, groups, is_kept, environment, lighting })
     }
 }
 
@@ -56,9 +70,12 @@ impl ScenePlate<'_> {
         &self.lighting
     }
 
-    /// Dispatches that trace the environment map, with its coarser levels.
+    /// Dispatches that trace the environment map, with its coarser levels; none if it is there already.
     #[must_use]
     pub fn dispatches<'a>(&'a self, pass: &'a RainPass<'_>) -> Vec<Dispatch<'a>> {
+        if self.is_kept {
+            return Vec::new();
+        }
         let finest = self.tracer.dispatch(&self.bindings, [self.groups, self.groups, 1]);
         std::iter::once(finest).chain(pass.environment()).collect()
     }

@@ -1,11 +1,14 @@
 //! Devices that draw frames: a GPU with its pipelines, or the CPU.
 
+use std::cell::RefCell;
+
 use downpour_render::camera::{Camera, Viewpoint};
 use downpour_render::glass::{GlassPicture, WetPane};
 use downpour_render::glow::Glow;
 use downpour_render::picture::{Picture, PictureOptions, timed};
 use downpour_render::rain::DropMasks;
-use downpour_trace::picture::render_picture;
+use downpour_trace::kept::KeptPlate;
+use downpour_trace::picture::{TracedPlate, render_picture_on};
 use downpour_trace::stage::Stage;
 use downpour_weather::Weather;
 
@@ -99,6 +102,8 @@ pub struct Computer {
 pub(super) struct Drawer {
     computer: Computer,
     falls_back: bool,
+    /// The plate of the last picture on the CPU, if it was to be kept.
+    kept: RefCell<Option<KeptPlate<TracedPlate>>>,
     #[cfg(feature = "wgpu")]
     on_gpu: Option<OnGpu>,
 }
@@ -184,7 +189,8 @@ impl Drawer {
                 reason: None,
             };
             let renderer = downpour_trace::gpu::PictureRenderer::new(&gpu);
-            let mut drawer = Self { computer, falls_back: device.falls_back, on_gpu: None };
+            let kept = RefCell::default();
+            let mut drawer = Self { computer, falls_back: device.falls_back, kept, on_gpu: None };
             match renderer {
                 Ok(renderer) => {
                     drawer.on_gpu = Some(OnGpu::new(gpu, renderer));
@@ -201,6 +207,7 @@ impl Drawer {
         Ok(Self {
             computer: cpu(None),
             falls_back: device.falls_back,
+            kept: RefCell::default(),
             #[cfg(feature = "wgpu")]
             on_gpu: None,
         })
@@ -252,9 +259,23 @@ impl Drawer {
         None
     }
 
-    /// Draws a frame, seen through a pane if there is one.
+    /// Draws a frame for a display, if a GPU draws.
+    #[cfg(feature = "wgpu")]
+    pub(super) fn display(
+        &self,
+        of: downpour_trace::gpu::PictureUse,
+        stage: &Stage,
+        drops: &Drops,
+        masks: &DropMasks,
+        options: &PictureOptions,
+    ) -> Result<Option<downpour_trace::gpu::DisplayReadback>, RendererError> {
+        self.on_gpu.as_ref().map_or(Ok(None), |on_gpu| on_gpu.display(of, stage, drops, masks, options))
+    }
+
+    /// Draws a frame, seen through a pane if there is one. The plate of a scene that stands still is kept for so many frames of rays.
     pub(super) fn paint(
         &self,
+        kept_frames: u32,
         stage: &Stage,
         drops: &Drops,
         masks: &DropMasks,
@@ -263,13 +284,21 @@ impl Drawer {
     ) -> Result<Painted, RendererError> {
         #[cfg(feature = "wgpu")]
         if let Some(on_gpu) = &self.on_gpu {
-            return on_gpu.paint(stage, drops, masks, options, through);
+            return on_gpu.paint(kept_frames, stage, drops, masks, options, through);
         }
         let drops = match drops {
             Drops::Listed(drops) => stage.place(&drops.drops),
             Drops::OfDevice(shown) => stage.place(&shown.droplets),
         };
-        let mut picture = render_picture(&stage.data, &stage.viewpoint, &drops, masks, options)?;
+        let mut kept = self.kept.borrow_mut();
+        // Pictures that keep none leave that of others alone.
+        let mut own = if kept_frames > 0 { kept.take() } else { None };
+        let (scene, eye) = (&stage.data, &stage.viewpoint);
+        let mut picture = render_picture_on(&mut own, kept_frames, scene, eye, &drops, masks, options)?;
+        if kept_frames > 0 {
+            *kept = own;
+        }
+        drop(kept);
         if let Some(Through { glass, environment, glow, camera }) = through {
             let environment = environment.as_ref().unwrap_or(&picture.surroundings);
             let behind = picture.behind_glass();

@@ -13,6 +13,19 @@ use super::drops::Drops;
 use super::{Progress, Renderer, RendererError};
 
 impl Renderer {
+    /// True if a flash shines while the shutter is open.
+    #[cfg(feature = "wgpu")]
+    pub(super) fn is_in_flash(&self, time_s: f64) -> bool {
+        !self.flash_parts(time_s).is_empty()
+    }
+
+    /// Parts of the exposure of a time in which flashes shine.
+    fn flash_parts(&self, time_s: f64) -> Vec<FlashExposure> {
+        let half_s = 0.5 * self.weather.camera.shutter;
+        let fades = self.weather.camera.observer == Observer::Eye;
+        self.weather.lightning.exposure(time_s - half_s, time_s + half_s, fades)
+    }
+
     /// The frame of a time in the light of its flashes alone, in parts; none without lightning. `drops` are those of the frame.
     pub(super) fn flashes(
         &mut self,
@@ -20,9 +33,7 @@ impl Renderer {
         drops: &Drops,
         told: &mut dyn FnMut(Progress),
     ) -> Result<Vec<Painted>, RendererError> {
-        let half_s = 0.5 * self.weather.camera.shutter;
-        let fades = self.weather.camera.observer == Observer::Eye;
-        let parts = self.weather.lightning.exposure(time_s - half_s, time_s + half_s, fades);
+        let parts = self.flash_parts(time_s);
         if parts.is_empty() {
             return Ok(Vec::new());
         }
@@ -65,7 +76,7 @@ impl Renderer {
             response: TemporalResponse::Shutter,
             ..options.rain.exposure
         };
-        self.draw(&stage, &drops, &options, false)
+        self.draw(&stage, &drops, &options, 0, false)
     }
 }
 

@@ -10,7 +10,9 @@ use downpour_render::picture::PictureOptions;
 use downpour_render::rain::DropMasks;
 use downpour_sim::field::{EyeDrop, RainField};
 use downpour_sim::gpu::{FieldOnGpu, FieldSearch};
-use downpour_trace::gpu::{FieldDrops, PictureDrops, PictureOnGpu, PictureRenderer};
+use downpour_trace::gpu::{
+    DisplayReadback, FieldDrops, PictureDrops, PictureOnGpu, PictureRenderer, PictureUse,
+};
 use downpour_trace::stage::Stage;
 
 use super::RendererError;
@@ -42,23 +44,48 @@ impl OnGpu {
         self.renderer.max_drops()
     }
 
+    /// Draws a frame for a display.
+    pub(super) fn display(
+        &self,
+        of: PictureUse,
+        stage: &Stage,
+        drops: &Drops,
+        masks: &DropMasks,
+        options: &PictureOptions,
+    ) -> Result<Option<DisplayReadback>, RendererError> {
+        Ok(self.drawn(of, stage, drops, masks, options)?.begin_display()?)
+    }
+
+    fn drawn(
+        &self,
+        of: PictureUse,
+        stage: &Stage,
+        drops: &Drops,
+        masks: &DropMasks,
+        options: &PictureOptions,
+    ) -> Result<PictureOnGpu, RendererError> {
+        match drops {
+            Drops::Listed(drops) => {
+                let drops = stage.place(&drops.drops);
+                let drops = PictureDrops::Listed(&drops);
+                Ok(self.renderer.draw_for(of, &stage.data, &stage.viewpoint, drops, masks, options)?)
+            }
+            Drops::OfDevice(shown) => self.draw(of, stage, shown, masks, options),
+        }
+    }
+
     /// Draws a frame, seen through a pane if there is one.
     pub(super) fn paint(
         &self,
+        kept_frames: u32,
         stage: &Stage,
         drops: &Drops,
         masks: &DropMasks,
         options: &PictureOptions,
         through: Option<&Through>,
     ) -> Result<Painted, RendererError> {
-        let mut drawn = match drops {
-            Drops::Listed(drops) => {
-                let drops = stage.place(&drops.drops);
-                let drops = PictureDrops::Listed(&drops);
-                self.renderer.draw(&stage.data, &stage.viewpoint, drops, masks, options)?
-            }
-            Drops::OfDevice(shown) => self.draw(stage, shown, masks, options)?,
-        };
+        let of = PictureUse { kept_frames, tone: None };
+        let mut drawn = self.drawn(of, stage, drops, masks, options)?;
         let Some(Through { glass, environment, glow, camera }) = through else {
             return Ok(Painted::OnItsWay { read: Box::new(drawn.begin_read()?), through_glass: None });
         };
@@ -78,6 +105,7 @@ impl OnGpu {
     /// Draws a frame whose drops the device finds.
     fn draw(
         &self,
+        of: PictureUse,
         stage: &Stage,
         shown: &ShowerView,
         masks: &DropMasks,
@@ -100,7 +128,7 @@ impl OnGpu {
             known: &known,
         };
         let drops = PictureDrops::Field(FieldDrops { field: rain, on_gpu, search, origin: stage.origin });
-        Ok(self.renderer.draw(&stage.data, &stage.viewpoint, drops, masks, options)?)
+        Ok(self.renderer.draw_for(of, &stage.data, &stage.viewpoint, drops, masks, options)?)
     }
 
     /// The pipelines of panes.

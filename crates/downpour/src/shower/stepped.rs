@@ -71,6 +71,8 @@ struct Running {
     /// Steps from time 0 to the state.
     step: i64,
     surroundings: Surroundings,
+    /// True if the next step looks at wind and map, whatever its number: the weather has changed.
+    is_stale: bool,
 }
 
 /// Obstacles and wind of the drops.
@@ -131,6 +133,11 @@ impl Stepped {
         Self { law, speeds, weather: weather.clone(), options, least_pixels: None, running: None }
     }
 
+    /// Takes over the drops of the same rain in another wind or before another camera.
+    pub(super) fn go_on_from(&mut self, other: &Self) {
+        self.running = other.running.clone().map(|running| Running { is_stale: true, ..running });
+    }
+
     /// True if the rain of a time depends on the recent past alone.
     pub(super) fn forgets(&self) -> bool {
         self.options.volume == SimVolume::View
@@ -169,7 +176,7 @@ impl Stepped {
         for done in 1..=all {
             running.step += 1;
             let now_s = running.step as f64 / STEPS_PER_S;
-            if running.step % STEPS_PER_WIND == 0 {
+            if running.step % STEPS_PER_WIND == 0 || std::mem::take(&mut running.is_stale) {
                 running.surroundings = self.surroundings(scenery, now_s, Some(running.surroundings))?;
             }
             let view = self.view(scenery, now_s)?;
@@ -274,7 +281,7 @@ impl Stepped {
             ..self.options.clone()
         };
         let simulation = Simulation::new(&self.law, &options, &moment)?;
-        Ok(Running { simulation, step, surroundings })
+        Ok(Running { simulation, step, surroundings, is_stale: false })
     }
 
     /// Wind and map for the steps from a time on until they are made anew.

@@ -1,0 +1,173 @@
+//! A plate that stays from picture to picture: while neither the scene nor the eye changes, its picture is refined by one more frame of
+//! rays each time, up to a number of frames, and then costs nothing.
+//!
+//! What moves the scene's light by less than an eye can tell does not count: surfaces that get wetter step by step.
+
+use std::sync::Arc;
+
+use downpour_math::rng::rng_draw;
+use downpour_render::camera::Camera;
+use downpour_render::rain::EnvironmentFrame;
+use downpour_render::refine::{refine_shift, shifted};
+
+use crate::data::{RenderFrame, SceneData};
+use crate::wet::{WET_ROWS_THAT_CHANGE, wet_fraction};
+
+/// Dimension of the random numbers of the frames of a plate.
+const SEED_DIMENSION: u32 = 4121;
+
+/// Change of a wetness between 0 and 1 that counts as none.
+const LEAST_WETTING: f32 = 1.0 / 128.0;
+
+/// Fluxes of rain that surfaces meet, for which wetness is compared.
+const FLUXES: [f32; 3] = [1.0, 0.2, 0.04];
+
+/// A plate with what it shows; `T` holds its picture and its environment map.
+#[derive(Clone, Debug)]
+pub struct KeptPlate<T> {
+    scene: SceneData,
+    frame: RenderFrame,
+    environment: EnvironmentFrame,
+    /// Frames that its picture is the mean of.
+    count: u32,
+    /// Picture and environment map.
+    pub held: T,
+}
+
+impl<T> KeptPlate<T> {
+    /// Begins a plate of a scene, of which no frame is taken yet.
+    #[must_use]
+    pub fn new(scene: &SceneData, frame: &RenderFrame, environment: &EnvironmentFrame, held: T) -> Self {
+        Self { scene: scene.clone(), frame: seedless(frame), environment: *environment, count: 0, held }
+    }
+
+    /// True if a frame of a scene shows the same.
+    #[must_use]
+    pub fn shows(&self, scene: &SceneData, frame: &RenderFrame, environment: &EnvironmentFrame) -> bool {
+        bytemuck::bytes_of(&self.frame) == bytemuck::bytes_of(&seedless(frame))
+            && self.environment == *environment
+            && shows_alike(&self.scene, scene)
+    }
+
+    /// Number of frames that its picture is the mean of.
+    #[must_use]
+    pub fn count(&self) -> u32 {
+        self.count
+    }
+
+    /// The next frame to be taken into the mean, with its number from 1 on; `None` after `max` frames. The first is `frame` itself.
+    pub fn next(&mut self, frame: &RenderFrame, max: u32) -> Option<(RenderFrame, u32)> {
+        if self.count >= max.max(1) {
+            return None;
+        }
+        self.count += 1;
+        Some((refined_frame(frame, self.count), self.count))
+    }
+}
+
+/// Frame `count` from 1 on of the mean that refines the picture of a frame.
+fn refined_frame(frame: &RenderFrame, count: u32) -> RenderFrame {
+    if count <= 1 {
+        return *frame;
+    }
+    let camera = shifted(&frame.camera, refine_shift(count));
+    let seed = rng_draw([frame.camera.seed, 0], count, 0, SEED_DIMENSION)[0];
+    RenderFrame { camera: Camera { seed, ..camera }, ..*frame }
+}
+
+fn seedless(frame: &RenderFrame) -> RenderFrame {
+    RenderFrame { camera: Camera { seed: 0, ..frame.camera }, ..*frame }
+}
+
+/// True if two scenes show the same: what they share is the same memory, and their tables are equal but for a wetness that nobody can
+/// tell.
+fn shows_alike(before: &SceneData, scene: &SceneData) -> bool {
+    let shares = Arc::ptr_eq(&before.nodes, &scene.nodes)
+        && Arc::ptr_eq(&before.triangles, &scene.triangles)
+        && Arc::ptr_eq(&before.corners, &scene.corners)
+        && Arc::ptr_eq(&before.texels, &scene.texels)
+        && Arc::ptr_eq(&before.sky, &scene.sky);
+    let rows = |scene: &SceneData| {
+        let wet = scene.wetness as usize;
+        let skipped = if wet > 0 { wet..wet + WET_ROWS_THAT_CHANGE } else { 0..0 };
+        (skipped, scene.table.len())
+    };
+    if !shares || rows(before) != rows(scene) {
+        return false;
+    }
+    let (skipped, _) = rows(scene);
+    let (table, other) = (&scene.table, &before.table);
+    if table[..skipped.start] != other[..skipped.start] || table[skipped.end..] != other[skipped.end..] {
+        return false;
+    }
+    if skipped.is_empty() {
+        return true;
+    }
+    let wetness = |scene: &SceneData| {
+        let wet = scene.wet_load();
+        FLUXES.map(|flux| wet_fraction(wet.before, wet.kept, wet.since, flux))
+    };
+    wetness(before).iter().zip(wetness(scene)).all(|(a, b)| (a - b).abs() <= LEAST_WETTING)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use downpour_render::camera::Viewpoint;
+    use downpour_render::rain::RainOptions;
+    use glam::Vec3;
+
+    use crate::builder::SceneBuilder;
+    use crate::sky_light::SkyLight;
+    use crate::wet::SceneWetness;
+    use downpour_weather::WetnessAt;
+
+    fn frame_of(scene: &SceneData, eye: Vec3, seed: u64) -> RenderFrame {
+        let viewpoint = Viewpoint { eye, forward: Vec3::NEG_Z, up: Vec3::Y, fov_y: 0.8 };
+        RenderFrame::new(scene, &viewpoint, [64, 36], 1, 1, seed).expect("a frame")
+    }
+
+    fn wet(scene: &mut SceneData, since: f64) {
+        let at = WetnessAt { before: 0.0, kept: 1.0, since };
+        let wetness = SceneWetness { at, towards: Vec3::Y, shift: Vec3::ZERO };
+        scene.set_wetness(Some(&wetness));
+    }
+
+    #[test]
+    fn a_plate_is_kept_while_it_shows_the_same() {
+        let scene = SceneBuilder::new().build(&SkyLight::uniform([1.0; 3]));
+        let frame = frame_of(&scene, Vec3::ZERO, 1);
+        let layout = EnvironmentFrame::new(&frame.camera, &RainOptions::default());
+        let mut plate = KeptPlate::new(&scene, &frame, &layout, ());
+        assert!(plate.shows(&scene, &frame_of(&scene, Vec3::ZERO, 2), &layout));
+        assert!(!plate.shows(&scene, &frame_of(&scene, Vec3::X, 1), &layout));
+        let other = SceneBuilder::new().build(&SkyLight::uniform([2.0; 3]));
+        assert!(!plate.shows(&other, &frame, &layout));
+        // The first frame is that of a picture by itself, the others are seen from it by other rays.
+        let (first, count) = plate.next(&frame, 3).expect("a first frame");
+        assert_eq!((first.camera, count), (frame.camera, 1));
+        let (second, count) = plate.next(&frame, 3).expect("a second frame");
+        assert!(second.camera.seed != frame.camera.seed && second.camera.forward != frame.camera.forward);
+        assert_eq!((count, second.camera.eye), (2, frame.camera.eye));
+        assert!(plate.next(&frame, 3).is_some());
+        assert!(plate.next(&frame, 3).is_none());
+        assert_eq!(plate.count(), 3);
+    }
+
+    #[test]
+    fn a_wetness_that_nobody_can_tell_does_not_count() {
+        let mut scene = SceneBuilder::new().build(&SkyLight::uniform([1.0; 3]));
+        wet(&mut scene, 1.0);
+        let frame = frame_of(&scene, Vec3::ZERO, 1);
+        let layout = EnvironmentFrame::new(&frame.camera, &RainOptions::default());
+        let plate = KeptPlate::new(&scene, &frame, &layout, ());
+        let mut later = scene.clone();
+        wet(&mut later, 1.005);
+        assert!(plate.shows(&later, &frame, &layout));
+        wet(&mut later, 1.2);
+        assert!(!plate.shows(&later, &frame, &layout));
+        wet(&mut later, 1.0);
+        *later.table.last_mut().expect("a row") = [7; 4];
+        assert!(!plate.shows(&later, &frame, &layout));
+    }
+}

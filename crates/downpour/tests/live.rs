@@ -1,0 +1,242 @@
+//! A renderer whose weather is changed by hand, plates that stay, and frames for a display.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use downpour::scene::Budget;
+use downpour::scene::sandbox::NoFiles;
+use downpour::weather::{Roots, Weather, load};
+use downpour::{Backend, Device, Frame, Renderer, RendererOptions};
+
+/// Two lamps over a floor with a step.
+const WEATHER: &str = "
+[rain]
+rate_mm_h = 120
+seed = 7
+[sky]
+zenith_color = [0.2, 0.3, 0.4]
+[[light]]
+point = { position_m = [1, 2.5, -2], intensity_cd = 40 }
+[camera]
+position_m = [0, 1.2, 5]
+look_at_m = [0, 0.6, 0]
+fov_deg = 30
+[[model]]
+file = 'floor.gltf'
+[output]
+size = [48, 27]
+";
+
+/// A weather file with its model in a folder of its own.
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let positions: [[f32; 3]; 8] = [
+        [-4.0, 0.0, -4.0],
+        [4.0, 0.0, -4.0],
+        [4.0, 0.0, 4.0],
+        [-4.0, 0.0, 4.0],
+        [-0.5, 0.0, 0.5],
+        [0.5, 0.0, 0.5],
+        [0.0, 0.0, -0.5],
+        [0.0, 1.0, 0.0],
+    ];
+    let indices: [u32; 15] = [0, 2, 1, 0, 3, 2, 4, 5, 7, 5, 6, 7, 6, 4, 7];
+    let bytes: Vec<u8> = positions.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+    let all = [bytes, indices.iter().flat_map(|k| k.to_le_bytes()).collect()].concat();
+    std::fs::write(folder.path().join("floor.bin"), all).unwrap();
+    let model = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
+        "buffers":[{"uri":"floor.bin","byteLength":156}],
+        "bufferViews":[{"buffer":0,"byteLength":96},{"buffer":0,"byteOffset":96,"byteLength":60}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":8,"type":"VEC3","min":[-4,0,-4],"max":[4,1,4]},
+        {"bufferView":1,"componentType":5125,"count":15,"type":"SCALAR"}]}"#;
+    std::fs::write(folder.path().join("floor.gltf"), model).unwrap();
+    folder
+}
+
+/// The weather with another part in place of some.
+fn changed(parts: &[(&str, &str)]) -> Weather {
+    let mut text = WEATHER.to_owned();
+    for (from, to) in parts {
+        assert!(text.contains(from), "{from}");
+        text = text.replacen(from, to, 1);
+    }
+    Weather::parse("a.toml", &text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn files(folder: &tempfile::TempDir) -> Roots {
+    Roots::open(&folder.path().join("a.toml"), &[]).unwrap()
+}
+
+fn opened(
+    folder: &tempfile::TempDir,
+    weather: &Weather,
+    options: &RendererOptions,
+    device: Device,
+) -> Renderer {
+    let loaded = load(weather, &files(folder), &mut Budget::default()).unwrap();
+    let renderer = Renderer::new(weather.clone(), loaded, options.clone(), device);
+    renderer.unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn fast() -> RendererOptions {
+    RendererOptions { samples: 1, sky_rays: 1, ..RendererOptions::default() }
+}
+
+fn bits(frame: &Frame) -> Vec<[u32; 3]> {
+    frame.radiance().iter().map(|pixel| pixel.map(f32::to_bits)).collect()
+}
+
+/// What is set by hand is what a renderer shows that was opened so: rain, camera, size, sky, lamps.
+#[test]
+fn a_weather_that_is_set_is_the_weather_that_is_opened() {
+    let folder = folder();
+    let first = changed(&[]);
+    let mut live = opened(&folder, &first, &fast(), Device::cpu());
+    let before = bits(&live.frame(0.5).unwrap());
+    live.set_exposure(Some(1.0));
+    let lamps = "[[light]]\npoint = { position_m = [-1, 2, -1], intensity_cd = 90 }\n\n[camera]";
+    let changes = [
+        ("rain", changed(&[("rate_mm_h = 120", "rate_mm_h = 300"), ("seed = 7", "seed = 3")])),
+        ("camera and size", changed(&[("fov_deg = 30", "fov_deg = 50"), ("[48, 27]", "[30, 40]")])),
+        ("another lamp, another sky", changed(&[("[camera]", lamps), ("[0.2, 0.3, 0.4]", "[2, 1, 0.5]")])),
+        (
+            "no lamp, and a sun",
+            changed(&[(
+                "[[light]]\npoint",
+                "[sun]\nilluminance_lux = 9\nazimuth_deg = 20\nelevation_deg = 40\n#",
+            )]),
+        ),
+    ];
+    for (name, weather) in changes {
+        live.set_weather(weather.clone(), &files(&folder)).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let mut own = opened(&folder, &weather, &fast(), Device::cpu());
+        let found = bits(&live.frame(0.5).unwrap());
+        assert!(found == bits(&own.frame(0.5).unwrap()), "{name}");
+        assert!(found != before, "{name} shows");
+    }
+    live.set_weather(first, &files(&folder)).unwrap();
+    assert!(bits(&live.frame(0.5).unwrap()) == before, "and back");
+}
+
+/// What is wrong with a weather is said, and the renderer goes on with the one that it had.
+#[test]
+fn a_weather_that_is_wrong_changes_nothing() {
+    let folder = folder();
+    let first = changed(&[]);
+    let mut live = opened(&folder, &first, &fast(), Device::cpu());
+    let before = bits(&live.frame(0.5).unwrap());
+    let missing = changed(&[("floor.gltf", "nothing.glb")]);
+    let error = live.set_weather(missing, &NoFiles).unwrap_err().to_string();
+    assert!(error.contains("nothing.glb"), "{error}");
+    let mut empty = first.clone();
+    empty.size = [0, 9];
+    let error = live.set_weather(empty, &files(&folder)).unwrap_err().to_string();
+    assert!(error.contains('0'), "{error}");
+    assert_eq!(live.weather(), &first);
+    assert!(bits(&live.frame(0.5).unwrap()) == before);
+}
+
+/// Drops that fall step by step stay when the wind changes, and are blown elsewhere from then on.
+#[test]
+fn stepped_rain_goes_on_in_another_wind() {
+    let folder = folder();
+    let vortex = |strength: u32| {
+        let wind =
+            format!("[[wind]]\nvortex = {{ strength_m2_s = {strength}, center_m = [0, 1, 0] }}\n[camera]");
+        let many = ("rate_mm_h = 120", "rate_mm_h = 500");
+        changed(&[("[camera]", &wind), many, ("fov_deg = 30", "fov_deg = 60"), ("[48, 27]", "[160, 90]")])
+    };
+    let mut live = opened(&folder, &vortex(5), &fast(), Device::cpu());
+    let positions = |frame: &Frame| -> std::collections::BTreeMap<u64, [f64; 3]> {
+        frame.drops.drops.iter().map(|drop| (drop.id, drop.position.to_array())).collect()
+    };
+    let at = |renderer: &mut Renderer, time_s| positions(&renderer.frame(time_s).unwrap());
+    let before = at(&mut live, 0.5);
+    live.set_weather(vortex(60), &files(&folder)).unwrap();
+    let same = at(&mut live, 0.5);
+    assert_eq!(same, before, "the wind blows from the next step on");
+    let blown = at(&mut live, 0.6);
+    let mut calm = opened(&folder, &vortex(5), &fast(), Device::cpu());
+    let calm = at(&mut calm, 0.6);
+    let both: Vec<f64> = blown
+        .iter()
+        .filter_map(|(id, a)| calm.get(id).map(|b| (0..3).map(|k| (a[k] - b[k]).abs()).sum()))
+        .collect();
+    let moved = both.iter().filter(|apart| **apart > 1.0e-3).count();
+    assert!(
+        both.len() * 2 > calm.len() && moved * 2 > both.len(),
+        "{moved} of {} of {}",
+        both.len(),
+        calm.len()
+    );
+}
+
+fn mean_difference(a: &Frame, b: &[[f32; 4]]) -> f32 {
+    let pixels = a.picture.clean.iter().zip(b);
+    let apart = pixels.map(|(a, b)| (0..3).map(|k| (a[k] - b[k]).abs() / (a[k] + b[k] + 0.1)).sum::<f32>());
+    apart.sum::<f32>() / b.len() as f32
+}
+
+/// A plate that stays comes nearer to what many samples show, frame by frame, then is the same to the bit, and is made anew for
+/// another camera.
+fn a_kept_plate_is_refined(device: &Device) {
+    let folder = folder();
+    let mut weather = changed(&[]);
+    let options = RendererOptions { kept_frames: 12, ..fast() };
+    let mut live = opened(&folder, &weather, &options, device.clone());
+    let mut plain = opened(&folder, &weather, &fast(), device.clone());
+    // The same scene with other rays.
+    let mut other = opened(&folder, &changed(&[("seed = 7", "seed = 8")]), &options, device.clone());
+    let others: Vec<Frame> = (0..12).map(|_| other.frame(0.5).unwrap()).collect();
+    let frames: Vec<Frame> = (0..14).map(|_| live.frame(0.5).unwrap()).collect();
+    assert!(
+        frames[0].picture.clean == plain.frame(0.5).unwrap().picture.clean,
+        "the first is a frame by itself"
+    );
+    // Noise of a mean of n frames is that of one over the root of n.
+    let noise = [0, 3, 11].map(|k: usize| mean_difference(&frames[k], &others[k].picture.clean));
+    assert!(noise[1] < 0.65 * noise[0] && noise[2] < 0.45 * noise[0], "{noise:?}");
+    let traced = |frame: &Frame| frame.picture.passes.iter().any(|(name, _)| *name == "scene");
+    assert!(traced(&frames[11]) && !traced(&frames[12]));
+    // Rain falls on before it.
+    let later = live.frame(0.6).unwrap();
+    assert!(!traced(&later) && later.picture.rain != frames[13].picture.rain);
+    weather.camera.fov = Some(0.4);
+    live.set_weather(weather.clone(), &files(&folder)).unwrap();
+    plain.set_weather(weather.clone(), &files(&folder)).unwrap();
+    assert!(live.frame(0.5).unwrap().picture.clean == plain.frame(0.5).unwrap().picture.clean);
+}
+
+#[test]
+fn a_kept_plate_is_refined_on_a_cpu() {
+    a_kept_plate_is_refined(&Device::cpu());
+}
+
+#[cfg(feature = "wgpu")]
+#[test]
+fn a_kept_plate_is_refined_on_a_gpu() {
+    use downpour::gpu::{AdapterChoice, Gpu};
+    a_kept_plate_is_refined(&Device::gpu(Gpu::open(&AdapterChoice::Auto).unwrap(), false));
+}
+
+/// Pixels for a display are those of the frame of the time.
+#[test]
+fn a_frame_for_a_display_is_the_frame() {
+    let folder = folder();
+    let glow = changed(&[("[camera]", "[glow]\nglare = 0.05\n[camera]")]);
+    for device in [Backend::Cpu.device(), Backend::Auto.device()] {
+        let device = device.unwrap();
+        let mut display = opened(&folder, &glow, &fast(), device.clone());
+        let mut frames = opened(&folder, &glow, &fast(), device);
+        for time_s in [0.5, 0.6] {
+            let (shown, frame) = (display.display(time_s).unwrap(), frames.frame(time_s).unwrap());
+            assert_eq!((shown.size, shown.exposure.to_bits()), (frame.size(), frame.exposure.to_bits()));
+            assert_eq!(shown.drops_drawn, frame.picture.drawn.len());
+            assert_eq!(shown.drops_simulated, frame.drops.simulated);
+            for ([r, g, b, a], pixel) in shown.pixels.iter().zip(frame.pixels()) {
+                let apart = [*r, *g, *b].iter().zip(pixel).map(|(a, b)| a.abs_diff(b)).max();
+                assert!(apart <= Some(1) && *a == 255, "{r} {g} {b} where {pixel:?} is");
+            }
+        }
+    }
+}

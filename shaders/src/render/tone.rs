@@ -1,0 +1,38 @@
+//! `wgsl/render/tone.wgsl`: tone curves, and the picture to look at. Twin: `downpour_render::tone`.
+
+use super::rain::COMPOSE;
+use crate::{Kernel, Module};
+
+/// Every module of this file.
+pub const MODULES: &[&Module] = &[&TONE_CONSTANTS, &TONE];
+
+/// Every kernel of this file.
+pub const KERNELS: &[&Kernel] = &[&TONE_KERNEL];
+
+shared_constants! {
+    /// Numbers of the tone curves.
+    TONE_CONSTANTS at "render/tone constants" {
+        /// Largest channel, less the toe, that stays as it is.
+        TONE_START: f32 = 0.76;
+        /// Strength with which the curve of Khronos makes bright colors pale.
+        TONE_DESATURATION: f32 = 0.15;
+        /// Stops over the shoulder at which a color is half white.
+        TONE_HALF_WHITE_STOPS: f32 = 6.0;
+        /// Largest channel; radiance beyond it is white in any case.
+        TONE_MAX_CHANNEL: f32 = 1.0e12;
+        /// The neutral curve of Khronos.
+        TONE_KHRONOS: u32 = 0;
+        /// The curve that keeps hues.
+        TONE_KEEPS_HUE: u32 = 1;
+    }
+}
+
+/// Tone curves and pixels. Twin: `downpour_render::tone`.
+pub static TONE: Module = Module {
+    path: "render/tone.wgsl",
+    wgsl: include_str!("../../wgsl/render/tone.wgsl"),
+    uses: &[&TONE_CONSTANTS, &COMPOSE],
+};
+
+/// A picture to look at: one invocation per pixel.
+pub static TONE_KERNEL: Kernel = Kernel { entry: "main_tone", module: &TONE, workgroup: [8, 8, 1] };

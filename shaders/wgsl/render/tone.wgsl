@@ -1,0 +1,170 @@
+// From scene-referred radiance to a picture to look at: the tone curves, the sRGB transfer function, and a pixel of 8 bits a channel.
+// Colors up to 0.8 less the toe stay as they are in both curves, brighter ones are compressed.
+// Twin: downpour_render::tone.
+
+@group(0) @binding(0) var<uniform> tone_frame: ToneFrame;
+@group(0) @binding(1) var<storage, read> tone_plate: array<vec4f>;
+@group(0) @binding(2) var<storage, read> tone_rain: array<vec4f>;
+@group(0) @binding(3) var<storage, read> tone_glow: array<vec4f>;
+@group(0) @binding(4) var<storage, read_write> tone_target: array<u32>;
+
+struct ToneFrame {
+    width: u32,
+    height: u32,
+    // TONE_KHRONOS or TONE_KEEPS_HUE.
+    curve: u32,
+    // Factor from radiance to display.
+    exposure: f32,
+    // 1: tone_glow holds what glow adds.
+    has_glow: u32,
+    pad_a: u32,
+    pad_b: u32,
+    pad_c: u32,
+}
+
+// Linear BT.709 to the cone responses of Oklab, cube roots of these to lightness and colors, and both ways back.
+const TONE_CONES = mat3x3f(
+    0.41222146, 0.2119035, 0.08830246,
+    0.53633255, 0.6806995, 0.28171885,
+    0.051445995, 0.10739696, 0.6299787,
+);
+const TONE_OPPONENT = mat3x3f(
+    0.21045426, 1.9779985, 0.025904037,
+    0.7936178, -2.4285922, 0.78277177,
+    -0.004072047, 0.4505937, -0.80867577,
+);
+const TONE_CONE_ROOTS = mat3x3f(
+    1.0, 1.0, 1.0,
+    0.39633778, -0.105561346, -0.08948418,
+    0.21580376, -0.06385417, -1.2914855,
+);
+const TONE_PRIMARIES = mat3x3f(
+    4.0767417, -1.268438, -0.0041960863,
+    -3.3077116, 2.6097574, -0.7034186,
+    0.23096993, -0.3413194, 1.7076147,
+);
+
+// Luminance of linear BT.709.
+fn tone_luminance(color: vec3f) -> f32 {
+    return dot(color, vec3f(0.2126, 0.7152, 0.0722));
+}
+
+// A color of no channel below 0, less what a surface of gloss reflects of white surroundings.
+fn tone_lifted(color: vec3f) -> vec3f {
+    let least = min(min(color.x, color.y), color.z);
+    let offset = select(0.04, least - 6.25 * least * least, least < 0.08);
+    return color - vec3f(offset);
+}
+
+// Value of a largest channel from TONE_START on, below 1.
+fn tone_compressed(peak: f32) -> f32 {
+    let d = 1.0 - TONE_START;
+    return 1.0 - d * d / (peak + d - TONE_START);
+}
+
+// The neutral tone curve of Khronos; the result is in [0, 1].
+fn tone_neutral(color: vec3f) -> vec3f {
+    let lifted = tone_lifted(max(color, vec3f(0.0)));
+    let peak = max(max(lifted.x, lifted.y), lifted.z);
+    if peak < TONE_START {
+        return lifted;
+    }
+    let new_peak = tone_compressed(peak);
+    let scaled = lifted * (new_peak / peak);
+    let g = 1.0 - 1.0 / (TONE_DESATURATION * (peak - new_peak) + 1.0);
+    return mix(scaled, vec3f(new_peak), g);
+}
+
+// Oklab of a linear color of no channel below 0: lightness, green-red, blue-yellow.
+fn tone_oklab(color: vec3f) -> vec3f {
+    return TONE_OPPONENT * pow(max(TONE_CONES * color, vec3f(0.0)), vec3f(1.0 / 3.0));
+}
+
+// Linear color of an Oklab color.
+fn tone_linear(lab: vec3f) -> vec3f {
+    let roots = TONE_CONE_ROOTS * lab;
+    return TONE_PRIMARIES * (roots * roots * roots);
+}
+
+// A color within the display: one that is not is mixed with gray of its luminance, as little as that takes.
+fn tone_within(color: vec3f) -> vec3f {
+    let gray = clamp(tone_luminance(color), 0.0, 1.0);
+    let low = min(min(color.x, color.y), color.z);
+    let high = max(max(color.x, color.y), color.z);
+    var below = 1.0;
+    if low < 0.0 {
+        below = gray / (gray - low);
+    }
+    var above = 1.0;
+    if high > 1.0 {
+        above = (1.0 - gray) / (high - gray);
+    }
+    return clamp(mix(vec3f(gray), color, min(below, above)), vec3f(0.0), vec3f(1.0));
+}
+
+// Fraction of white in a color whose largest channel is `peak`.
+fn tone_whiteness(peak: f32) -> f32 {
+    let stops = log2(peak / TONE_START) / TONE_HALF_WHITE_STOPS;
+    let cube = stops * stops * stops;
+    return cube / (cube + 1.0);
+}
+
+// A color of the lightness and chroma of `color` and the hue of `hued`, both linear; paler where the display has none so strong.
+fn tone_with_hue(color: vec3f, hued: vec3f) -> vec3f {
+    let lab = tone_oklab(color);
+    let wanted = tone_oklab(hued);
+    let chroma = sqrt(lab.y * lab.y + lab.z * lab.z);
+    let strength = sqrt(wanted.y * wanted.y + wanted.z * wanted.z);
+    if strength < 1.0e-5 {
+        return color;
+    }
+    return tone_within(tone_linear(vec3f(lab.x, wanted.yz * (chroma / strength))));
+}
+
+// The tone curve that keeps hues in Oklab; the result is in [0, 1].
+fn tone_hue(radiance: vec3f) -> vec3f {
+    let color = max(radiance, vec3f(0.0));
+    if max(max(color.x, color.y), color.z) <= min(min(color.x, color.y), color.z) {
+        return tone_neutral(color);
+    }
+    let lifted = tone_lifted(min(color, vec3f(TONE_MAX_CHANNEL)));
+    let peak = max(max(lifted.x, lifted.y), lifted.z);
+    if peak < TONE_START {
+        return lifted;
+    }
+    let most = tone_compressed(peak);
+    let scaled = lifted * (most / peak);
+    return tone_with_hue(mix(scaled, vec3f(most), tone_whiteness(peak)), scaled);
+}
+
+// The sRGB transfer function, to 8 bits.
+fn tone_srgb(linear: f32) -> u32 {
+    let v = clamp(linear, 0.0, 1.0);
+    var encoded = v * 12.92;
+    if v > 0.0031308 {
+        encoded = 1.055 * pow(v, 1.0 / 2.4) - 0.055;
+    }
+    return u32(encoded * 255.0 + 0.5);
+}
+
+// A pixel of radiance as 8 bits each of red, green, blue and an alpha of 255, red lowest.
+fn tone_pixel(radiance: vec3f, exposure: f32, curve: u32) -> u32 {
+    var toned = tone_neutral(radiance * exposure);
+    if curve == TONE_KEEPS_HUE {
+        toned = tone_hue(radiance * exposure);
+    }
+    return tone_srgb(toned.x) | tone_srgb(toned.y) << 8u | tone_srgb(toned.z) << 16u | 255u << 24u;
+}
+
+@compute @workgroup_size(8, 8, 1)
+fn main_tone(@builtin(global_invocation_id) id: vec3u) {
+    if id.x >= tone_frame.width || id.y >= tone_frame.height {
+        return;
+    }
+    let i = id.y * tone_frame.width + id.x;
+    var seen = compose_pixel(tone_plate[i], tone_rain[i]).rgb;
+    if tone_frame.has_glow > 0u {
+        seen += tone_glow[i].rgb;
+    }
+    tone_target[i] = tone_pixel(seen, tone_frame.exposure, tone_frame.curve);
+}
