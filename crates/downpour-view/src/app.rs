@@ -26,7 +26,7 @@ pub use handles::{Handle, HandleKind};
 
 use crate::brush::Brush;
 use crate::document::{Document, DocumentError};
-use crate::engine::{DeviceChoice, Drawn, Engine, Pace, Request};
+use crate::engine::{DeviceChoice, Drawn, Engine, KEPT_FRAMES, Pace, Request};
 use crate::job::Job;
 use crate::key_path::KeyPath;
 use crate::navigation::FreeEye;
@@ -117,6 +117,11 @@ pub struct App {
     pace: Pace,
     asked: Option<Asked>,
     asked_scale: f64,
+    /// Pictures of the same state that were asked for.
+    repeats: u32,
+    meters: bool,
+    lists_drops: bool,
+    is_discarded: bool,
     changed_s: f64,
     watched_s: f64,
     window: [u32; 2],
@@ -170,6 +175,10 @@ impl App {
             pace: Pace::default(),
             asked: None,
             asked_scale: 0.0,
+            repeats: 0,
+            meters: false,
+            lists_drops: false,
+            is_discarded: false,
             changed_s: 0.0,
             watched_s: 0.0,
             window: [0; 2],
@@ -288,6 +297,45 @@ impl App {
         &mut self.document
     }
 
+    /// True if changes that are not saved may be lost, as the user has said.
+    #[must_use]
+    pub fn is_discarded(&self) -> bool {
+        self.is_discarded
+    }
+
+    /// A file beside the weather for the next picture of the window.
+    #[must_use]
+    pub fn screenshot_place(&self) -> PathBuf {
+        crate::brush::free_picture(&self.document.place())
+    }
+
+    /// Writes the picture, without panels and handles, as a PNG.
+    pub fn save_picture(&mut self, path: &Path) {
+        let Some(drawn) = self.drawn.clone() else {
+            self.complain("there is no picture yet");
+            return;
+        };
+        let [width, height] = drawn.size;
+        let written = downpour::render::file::write_png(width, height, &drawn.pixels)
+            .map_err(|error| error.to_string())
+            .and_then(|png| crate::document::write_whole(path, &png).map_err(|error| error.to_string()));
+        match written {
+            Ok(()) => self.say(format!("wrote {}", path.display())),
+            Err(error) => self.complain(error),
+        }
+    }
+
+    /// Draws the present state once more.
+    pub fn draw_again(&mut self) {
+        self.asked = None;
+    }
+
+    /// Draws the present state with the list of its drops.
+    pub fn list_drops(&mut self) {
+        self.lists_drops = true;
+        self.asked = None;
+    }
+
     /// Shows another document.
     pub fn show(&mut self, document: Document) {
         self.document.discard_recovery();
@@ -362,8 +410,12 @@ impl App {
                         self.texture = Some(context.load_texture("picture", image, TextureOptions::LINEAR))
                     }
                 }
-                if self.asked_scale <= self.pace.scale() {
+                // A picture of another size has a new plate, which later ones keep.
+                let is_first = self.drawn.as_ref().is_none_or(|before| before.size != drawn.size);
+                if self.asked_scale <= self.pace.scale() && !is_first {
                     self.pace.note(drawn.frame_ms);
+                }
+                if !is_first {
                     self.fluid_ms = Some(drawn.frame_ms);
                 }
                 self.drawn = Some(drawn);
@@ -398,28 +450,31 @@ impl App {
             return;
         }
         let is_new = self.asked.as_ref() != Some(&asked);
-        let scale = if let Some(scale) = self.options.scale {
-            if !is_new {
-                return;
-            }
-            scale
-        } else if is_new {
+        let fixed = self.options.scale;
+        let scale = if is_new {
             self.changed_s = now_s;
-            self.pace.scale()
+            self.repeats = 0;
+            fixed.unwrap_or_else(|| self.pace.scale())
         } else {
-            // At rest the picture is refined, one step at a time.
+            // At rest the picture is refined: a larger one, then one of more rays, one step at a time.
             let Some(drawn) = self.drawn.as_ref().filter(|_| !self.engine.is_busy()) else { return };
-            let next = crate::engine::SCALES.iter().rev().find(|&&scale| scale > self.asked_scale * 1.01);
-            let Some(&next) = next.filter(|_| now_s - self.changed_s > REST_S) else { return };
-            if drawn.frame_ms * (next / self.asked_scale).powi(2) > REFINED_MS {
+            if fixed.is_some() || now_s - self.changed_s < REST_S || self.repeats >= KEPT_FRAMES {
                 return;
             }
-            next
+            let larger = crate::engine::SCALES.iter().rev().find(|&&scale| scale > self.asked_scale * 1.01);
+            match larger {
+                Some(&scale) if drawn.frame_ms * (scale / self.asked_scale).powi(2) < REFINED_MS => scale,
+                _ => {
+                    self.repeats += 1;
+                    self.asked_scale
+                }
+            }
         };
         self.asked = Some(asked);
         self.asked_scale = scale;
         let request = self.request(self.pace.size(self.window, scale));
         self.engine.ask(request);
+        (self.meters, self.lists_drops) = (false, false);
     }
 
     /// The question for a picture of the present state.
@@ -433,6 +488,8 @@ impl App {
             time_s: self.clock.time_s,
             size,
             samples: 1,
+            meters: self.meters,
+            lists_drops: self.lists_drops,
         }
     }
 

@@ -1,6 +1,6 @@
 //! Puddles that are painted on the ground: a mask beside the weather file, and the puddle that has it.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::{DVec2, DVec3};
 
@@ -83,6 +83,14 @@ impl Mask {
             .map_err(|e| e.to_string())?;
         Ok(bytes)
     }
+}
+
+/// Name for a picture beside a weather file that no file has yet.
+#[must_use]
+pub fn free_picture(place: &Path) -> PathBuf {
+    let stem = place.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let name = |number: u32| place.with_file_name(format!("{stem}_{number:03}.png"));
+    (1..10_000).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(10_000))
 }
 
 /// Name for a mask beside a weather file that no file has yet.

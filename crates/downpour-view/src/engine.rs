@@ -14,7 +14,7 @@ use downpour::weather::{CameraPose, Weather};
 
 pub use drawn::{Drawn, Histogram, PictureView};
 pub use machine::Machine;
-pub(crate) use machine::open as open_device;
+pub(crate) use machine::{KEPT_FRAMES, open as open_device};
 pub use pace::{Pace, SCALES};
 
 /// Choice of the device that draws.
@@ -45,6 +45,10 @@ pub struct Request {
     pub size: [u32; 2],
     /// Samples along an edge of a pixel.
     pub samples: u32,
+    /// True if the exposure is metered anew.
+    pub meters: bool,
+    /// True if the drops are listed.
+    pub lists_drops: bool,
 }
 
 /// Reason why there is no picture.

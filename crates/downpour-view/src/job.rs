@@ -188,6 +188,8 @@ mod tests {
             eye: None,
             time_s: 0.0,
             samples: 1,
+            meters: false,
+            lists_drops: false,
         };
         let output = folder.path().join("a.png").display().to_string();
         let settings = JobSettings { output, is_clip: false, range_s: [0.0; 2], fps: 24.0, samples: 1 };

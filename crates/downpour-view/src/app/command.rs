@@ -45,6 +45,8 @@ pub enum Command {
     SetCamera,
     /// Record the flight as the path of the camera, or end that.
     Record,
+    /// Meter the exposure of the view.
+    Meter,
     /// Show or hide the slice of the wind.
     Slice,
     /// Show or hide tracers in the wind.
@@ -65,7 +67,7 @@ pub enum Command {
 
 impl Command {
     /// All of them, as the help lists them.
-    pub const ALL: [Self; 24] = [
+    pub const ALL: [Self; 25] = [
         Self::Save,
         Self::SaveAs,
         Self::Undo,
@@ -82,6 +84,7 @@ impl Command {
         Self::FileCamera,
         Self::SetCamera,
         Self::Record,
+        Self::Meter,
         Self::Slice,
         Self::Tracers,
         Self::Snap,
@@ -112,6 +115,7 @@ impl Command {
             Self::FileCamera => "Camera of the file",
             Self::SetCamera => "Set camera to view",
             Self::Record => "Record camera path",
+            Self::Meter => "Meter exposure",
             Self::Slice => "Wind slice",
             Self::Tracers => "Wind tracers",
             Self::Snap => "Snap to steps",
@@ -143,6 +147,7 @@ impl Command {
             Self::FileCamera => (Modifiers::NONE, Key::C),
             Self::SetCamera => (Modifiers::SHIFT, Key::C),
             Self::Record => (Modifiers::NONE, Key::R),
+            Self::Meter => (Modifiers::NONE, Key::M),
             Self::Slice => (Modifiers::NONE, Key::L),
             Self::Tracers => (Modifiers::NONE, Key::T),
             Self::Snap => (Modifiers::NONE, Key::G),
@@ -224,6 +229,10 @@ impl App {
             Command::FileCamera => self.eye = None,
             Command::SetCamera => self.set_camera(),
             Command::Record => self.record(),
+            Command::Meter => {
+                self.meters = true;
+                self.asked = None;
+            }
             Command::Slice => self.overlay.has_slice = !self.overlay.has_slice,
             Command::Tracers => self.overlay.has_tracers = !self.overlay.has_tracers,
             Command::Snap => self.overlay.snaps = !self.overlay.snaps,
@@ -258,6 +267,18 @@ impl App {
         self.selected = [id.clone()].into();
         self.say(format!("added {kind}"));
         Some(id)
+    }
+
+    /// Names the object that is selected alone.
+    ///
+    /// # Errors
+    /// As [`crate::document::Document::set`].
+    pub fn rename(&mut self, name: &str) -> Result<(), DocumentError> {
+        let mut chosen = self.selected.iter().cloned();
+        let (Some(id), None) = (chosen.next(), chosen.next()) else {
+            return Err(DocumentError::Absent { path: "the selection of one object".to_owned() });
+        };
+        self.document.set_entry_name(&KeyPath::of(id.list), id.index, name)
     }
 
     /// A place in the middle of the view, on the ground; lamps and drips above it.

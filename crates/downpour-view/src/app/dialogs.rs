@@ -130,6 +130,7 @@ impl App {
             }
             if ui.button("Discard").clicked() {
                 self.document.discard_recovery();
+                self.is_discarded = then.is_none();
                 goes_on = true;
             }
             is_open = !ui.button("Cancel").clicked();

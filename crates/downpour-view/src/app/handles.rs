@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::App;
 use crate::engine::PictureView;
 use crate::key_path::KeyPath;
-use crate::objects::{DirectionKey, Object, ObjectId, rounded, significant};
+use crate::objects::{DirectionKey, Object, rounded, significant};
 use crate::plain::Plain;
 use crate::wire::across;
 
@@ -222,10 +222,30 @@ impl App {
         }
     }
 
-    /// Ids of the objects of a drag.
+    /// Where a handle has to be dragged to, in points: by meters along an axis, or by a factor of radius or strength.
     #[must_use]
-    pub fn dragged_object(&self) -> Option<&ObjectId> {
-        self.drag.as_ref().map(|drag| &drag.object.id)
+    pub fn dragged_place(&self, handle: &Handle, by: f64) -> Option<Pos2> {
+        let drawn = self.drawn.as_ref()?;
+        let view = &drawn.view;
+        let objects = self.objects();
+        let object = objects.iter().rfind(|object| self.selected.contains(&object.id))?;
+        let at = object.position.as_ref().map_or_else(|| self.anchor(view), |(_, at)| *at);
+        let (_, depth) = view.project(at)?;
+        let screen = |point: DVec3| view.project(point).map(|(place, _)| self.to_screen(place));
+        match handle.kind {
+            HandleKind::Axis(axis) => {
+                screen(at + DVec3::AXES[axis.min(2)] * (view.height_at(depth) * ARROW + by))
+            }
+            HandleKind::Radius => {
+                let axis = object.direction.as_ref().map_or(DVec3::Y, |(_, direction)| *direction);
+                screen(at + radius_side(axis, view) * (object.radius.as_ref()?.1 * by))
+            }
+            HandleKind::Strength if by > 0.0 => {
+                let up = STRENGTH_POINTS * ops::ln(by);
+                Some(handle.at - egui::vec2(0.0, up as f32))
+            }
+            _ => None,
+        }
     }
 }
 

@@ -56,7 +56,7 @@ impl App {
             ui.label(quiet(size))
                 .on_hover_text("size of the picture, and its part of the window: at rest it is refined");
             ui.separator();
-            ui.label(quiet(format!("{} drops", drawn.in_picture.len())));
+            ui.label(quiet(format!("{} drops", drawn.drops_drawn)));
             ui.separator();
             if let Some(ms) = self.fluid_ms {
                 ui.label(quiet(format!("{:.1} /s", 1000.0 / ms.max(0.01))))

@@ -42,6 +42,7 @@ impl App {
                         Command::FileCamera,
                         Command::SetCamera,
                         Command::Record,
+                        Command::Meter,
                         Command::Slice,
                         Command::Tracers,
                         Command::FullScreen,

@@ -25,10 +25,10 @@ pub struct Drawn {
     pub view: PictureView,
     /// The scene, for rays to its surfaces.
     pub stage: Arc<Stage>,
-    /// The drops that it could show.
-    pub drops: VisibleDrops,
-    /// Indices of the drops that are in the picture, nearest first.
-    pub in_picture: Vec<u32>,
+    /// Number of drops in it.
+    pub drops_drawn: usize,
+    /// The drops that it could show, and the indices of those in it, nearest first, where they were asked for.
+    pub drops: Option<(VisibleDrops, Vec<u32>)>,
     /// Time of each pass, ms.
     pub passes: Vec<(&'static str, f64)>,
     /// Time from the question to the picture, ms.
@@ -132,7 +132,17 @@ impl Drawn {
     /// The nearest surface along a ray from the eye, m from it; `None` for the sky.
     #[must_use]
     pub fn distance(&self, direction: DVec3) -> Option<f64> {
-        let origin = (self.view.eye - self.stage.origin).as_vec3().to_array();
+        self.nearest(self.view.eye, direction)
+    }
+
+    /// The surface below a point, m.
+    #[must_use]
+    pub fn ground_below(&self, point: DVec3) -> Option<DVec3> {
+        self.nearest(point, DVec3::NEG_Y).map(|distance| point - DVec3::Y * distance)
+    }
+
+    fn nearest(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
+        let origin = (origin - self.stage.origin).as_vec3().to_array();
         let data = &self.stage.data;
         let direction = direction.as_vec3().to_array();
         let hit =
@@ -147,18 +157,19 @@ impl Drawn {
         (low.as_dvec3() + self.stage.origin, high.as_dvec3() + self.stage.origin)
     }
 
-    /// The list of drops that are drawn, as `downpour render --dump-drops` writes it.
+    /// The list of drops that are drawn, as `downpour render --dump-drops` writes it, where it was asked for.
     #[must_use]
-    pub fn drops_csv(&self) -> String {
+    pub fn drops_csv(&self) -> Option<String> {
         use std::fmt::Write as _;
         let mut text = String::from("id,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,diameter_mm,kind\n");
-        for drop in self.in_picture.iter().filter_map(|&index| self.drops.drops.get(index as usize)) {
+        let (drops, in_picture) = self.drops.as_ref()?;
+        for drop in in_picture.iter().filter_map(|&index| drops.drops.get(index as usize)) {
             let [x, y, z] = drop.position.to_array();
             let [vx, vy, vz] = drop.velocity.map(|v| v + 0.0);
             let (mm, kind) = (drop.diameter * 1.0e3, drop.kind.name());
             let _ = writeln!(text, "{},{x},{y},{z},{vx},{vy},{vz},{mm},{kind}", drop.id);
         }
-        text
+        Some(text)
     }
 }
 

@@ -13,6 +13,9 @@ use glam::DVec3;
 use super::drawn::{Drawn, Histogram, PictureView};
 use super::{Answer, DeviceChoice, Fault, Request};
 
+/// Pictures over which the scene without its rain is refined.
+pub(crate) const KEPT_FRAMES: u32 = 32;
+
 /// A renderer with the weather that it has.
 #[derive(Debug)]
 pub struct Machine {
@@ -24,8 +27,6 @@ pub struct Machine {
 #[derive(Debug)]
 struct Ready {
     renderer: Renderer,
-    /// The weather of the renderer, with the size and the eye of the question.
-    weather: Weather,
     samples: u32,
     place: std::path::PathBuf,
 }
@@ -56,10 +57,10 @@ impl Machine {
             drawn = self.try_draw(number, request, begin);
         }
         drawn.map(Arc::new).map_err(|error| {
-            // Whatever it was, the next question begins from nothing.
-            self.renderer = None;
+            // A weather that is refused leaves the renderer as it was; a device that is gone does not.
             let is_fatal = is_lost(&error);
             if is_fatal {
+                self.renderer = None;
                 self.device = None;
             }
             Fault { number, message: error.to_string(), is_fatal }
@@ -67,71 +68,75 @@ impl Machine {
     }
 
     fn try_draw(&mut self, number: u64, request: &Request, begin: Instant) -> Result<Drawn, RendererError> {
-        self.prepare(request)?;
-        let Some(Ready { renderer, weather, samples, .. }) = &mut self.renderer else {
+        let weather = self.prepare(request)?;
+        let Some(Ready { renderer, samples, .. }) = &mut self.renderer else {
             return Err(RendererError::NoGpuSupport);
         };
-        let frame = renderer.frame(request.time_s)?;
+        if request.meters {
+            renderer.set_exposure(None);
+        }
+        let mut drops = None;
+        let (size, pixels, drops_drawn, passes) = if request.lists_drops {
+            let frame = renderer.frame(request.time_s)?;
+            let pixels = frame.pixels();
+            let in_picture = frame.picture.drawn;
+            let count = in_picture.len();
+            let parts = (frame.picture.size, pixels, count, frame.picture.passes);
+            drops = Some((frame.drops, in_picture));
+            parts
+        } else {
+            let frame = renderer.display(request.time_s)?;
+            let pixels = frame.pixels.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
+            (frame.size, pixels, frame.drops_drawn, frame.passes)
+        };
         let stage = Arc::new(renderer.first_stage().clone());
-        let pixels = frame.pixels();
         Ok(Drawn {
             number,
             revision: request.revision,
             time_s: request.time_s,
-            size: frame.size(),
+            size,
             samples: *samples,
-            view: view(weather, &stage, request.time_s),
+            view: view(&weather, &stage, request.time_s),
             histogram: Histogram::of(&pixels),
             pixels,
             stage,
-            in_picture: frame.picture.drawn.clone(),
-            drops: frame.drops,
-            passes: frame.picture.passes,
+            drops_drawn,
+            drops,
+            passes,
             frame_ms: begin.elapsed().as_secs_f64() * 1.0e3,
             adapter: renderer.computer().adapter.clone(),
         })
     }
 
-    /// Makes the renderer one of the question's weather.
-    fn prepare(&mut self, request: &Request) -> Result<(), RendererError> {
+    /// Makes the renderer one of the question's weather, with the size and the eye of the question; returns that.
+    fn prepare(&mut self, request: &Request) -> Result<Weather, RendererError> {
         let mut weather = Weather { size: request.size, ..(*request.weather).clone() };
         if let Some(eye) = request.eye {
             weather.camera.path = Some(CameraPath::from(eye));
         }
-        if let Some(ready) = &mut self.renderer
-            && ready.samples == request.samples
-            && ready.place == request.place
-        {
-            if ready.weather == weather {
-                return Ok(());
+        let roots: Vec<&Path> = request.asset_roots.iter().map(std::path::PathBuf::as_path).collect();
+        let known = self.renderer.as_mut();
+        if let Some(ready) = known.filter(|it| it.samples == request.samples && it.place == request.place) {
+            if *ready.renderer.weather() != weather {
+                ready.renderer.set_weather(weather.clone(), &Roots::open(&request.place, &roots)?)?;
             }
-            // Another camera alone is the commonest change.
-            let mut other = ready.weather.clone();
-            other.camera.path.clone_from(&weather.camera.path);
-            if other == weather
-                && let Some(path) = weather.camera.path.clone()
-                && ready.renderer.set_camera(path).is_ok()
-            {
-                ready.weather = weather;
-                return Ok(());
-            }
+            return Ok(weather);
         }
         let device = match &self.device {
             Some(device) => device.clone(),
             None => self.device.insert(open(&self.choice)?).clone(),
         };
         self.renderer = None;
-        let roots: Vec<&Path> = request.asset_roots.iter().map(std::path::PathBuf::as_path).collect();
         let loaded = load(&weather, &Roots::open(&request.place, &roots)?, &mut Budget::default())?;
         let options = RendererOptions {
             samples: request.samples,
             first_s: request.time_s,
+            kept_frames: KEPT_FRAMES,
             ..RendererOptions::default()
         };
         let renderer = Renderer::new(weather.clone(), loaded, options, device)?;
-        let (samples, place) = (request.samples, request.place.clone());
-        self.renderer = Some(Ready { renderer, weather, samples, place });
-        Ok(())
+        self.renderer = Some(Ready { renderer, samples: request.samples, place: request.place.clone() });
+        Ok(weather)
     }
 }
 

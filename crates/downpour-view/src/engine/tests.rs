@@ -12,6 +12,8 @@ fn request(text: &str, folder: &std::path::Path, revision: u64) -> Request {
         time_s: 0.0,
         size: [32, 18],
         samples: 1,
+        meters: false,
+        lists_drops: false,
     }
 }
 
@@ -42,7 +44,7 @@ fn faults_are_answers_and_the_next_question_is_drawn() {
     let folder = tempfile::tempdir().unwrap();
     let choice = DeviceChoice { backend: Backend::Cpu, adapter: None };
     let engine = Engine::start(choice).unwrap();
-    let mut ask = |text: &str| {
+    let ask = |text: &str| {
         engine.ask(request(text, folder.path(), 1));
         assert!(engine.wait(Duration::from_secs(60)));
         engine.take().unwrap()
