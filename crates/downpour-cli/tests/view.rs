@@ -117,7 +117,8 @@ fn a_session_is_in_the_file_and_in_the_drops() {
     // Horizontally drops follow the air: the velocity of most has a part along that of the field at their place.
     let weather = Weather::parse("field.toml", &text).unwrap();
     let air = WindMatrix::encode(&weather.wind.at(1.5)).unwrap();
-    let wind = |at: DVec3| -> Vec3 { air.iter().map(|part| wind_primitive_velocity(part, at.as_vec3())).sum() };
+    let wind =
+        |at: DVec3| -> Vec3 { air.iter().map(|part| wind_primitive_velocity(part, at.as_vec3())).sum() };
     let drops = fs::read_to_string(folder.path().join("drops.csv")).unwrap();
     let (mut along, mut count) = (0, 0);
     for line in drops.lines().skip(1) {

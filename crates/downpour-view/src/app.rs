@@ -4,6 +4,7 @@ mod clock;
 mod command;
 mod dialogs;
 mod handles;
+mod icons;
 mod inspector;
 mod list;
 mod overlay;

@@ -55,8 +55,8 @@ impl Offscreen {
             focused: true,
             ..Default::default()
         };
-        let output = self.context.run_ui(input, |ui| app.frame(ui));
-        self.raster.update(&output.textures_delta);
+        let mut output = self.context.run_ui(input, |ui| app.frame(ui));
+        self.raster.update(&mut output.textures_delta);
         self.primitives = self.context.tessellate(output.shapes, output.pixels_per_point);
         app.take_wishes()
     }

@@ -14,7 +14,7 @@ pub struct Raster {
 
 impl Raster {
     /// Takes new textures, and parts of them.
-    pub fn update(&mut self, delta: &TexturesDelta) {
+    pub fn update(&mut self, delta: &mut TexturesDelta) {
         for (&id, changes) in &delta.set {
             for change in changes {
                 let ImageData::Color(image) = &change.image;
@@ -29,6 +29,8 @@ impl Raster {
         for id in &delta.free {
             self.textures.remove(id);
         }
+        // egui wants to know that they were taken.
+        delta.clear();
     }
 
     /// Fills the triangles of a pass: a picture of `size` pixels, premultiplied sRGB over a background.
@@ -172,13 +174,13 @@ mod tests {
             screen_rect: Some(egui::Rect::from_min_size(Pos2::ZERO, egui::vec2(40.0, 30.0))),
             ..Default::default()
         };
-        let output = context.run_ui(input, |ui| {
+        let mut output = context.run_ui(input, |ui| {
             let mut mesh = egui::Mesh::default();
             let half = Color32::from_rgba_premultiplied(100, 0, 0, 128);
             mesh.add_colored_rect(egui::Rect::from_min_max(Pos2::new(3.0, 4.0), Pos2::new(33.0, 24.0)), half);
             ui.painter().add(egui::Shape::mesh(mesh));
         });
-        raster.update(&output.textures_delta);
+        raster.update(&mut output.textures_delta);
         let primitives = context.tessellate(output.shapes, 1.0);
         let pixels = raster.draw(&primitives, [40, 30], 1.0, Color32::from_rgb(0, 0, 80));
         let inside = |x: usize, y: usize| (3..33).contains(&x) && (4..24).contains(&y);

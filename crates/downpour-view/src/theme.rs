@@ -51,6 +51,9 @@ pub const QUIET: Color32 = Color32::from_rgb(137, 143, 152);
 pub fn apply(context: &egui::Context) {
     context.set_theme(egui::Theme::Dark);
     context.all_styles_mut(|style| {
+        if let Some(small) = style.text_styles.get_mut(&egui::TextStyle::Small) {
+            small.size = 11.5;
+        }
         style.spacing.item_spacing = Vec2::new(8.0, 5.0);
         style.spacing.button_padding = Vec2::new(8.0, 3.0);
         style.spacing.interact_size.y = 22.0;

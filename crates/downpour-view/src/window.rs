@@ -84,7 +84,7 @@ impl eframe::App for Shell {
     fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
         self.app.frame(ui);
         let context = ui.ctx().clone();
-        let mark = if self.app.document().is_dirty() { "● " } else { "" };
+        let mark = if self.app.document().is_dirty() { "* " } else { "" };
         let title = format!("{mark}{} - Downpour", self.app.document().title());
         if title != self.title {
             context.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));

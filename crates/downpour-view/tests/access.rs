@@ -70,8 +70,10 @@ fn every_control_has_a_name() {
     let mut count = 0;
     for node in harness.root().children_recursive() {
         let inner = node.accesskit_node();
-        let is_control =
-            matches!(inner.role(), Role::Button | Role::CheckBox | Role::SpinButton | Role::ComboBox | Role::Slider);
+        let is_control = matches!(
+            inner.role(),
+            Role::Button | Role::CheckBox | Role::SpinButton | Role::ComboBox | Role::Slider
+        );
         if is_control {
             count += 1;
             let has_name = inner.label().is_some_and(|label| !label.is_empty());
@@ -99,7 +101,10 @@ fn a_number_is_typed_into_the_panel() {
 /// What the parser refuses is said in its words, and the last good weather stays.
 #[test]
 fn an_edit_that_is_refused_is_explained() {
-    let text = TEXT.replace("[rain]\n", "[rain]\nvolume = \"closed-form\"\n").replace("vortex = { strength_m2_s = 40, center_m = [0, 1, 0], core_m = 2 }", "uniform = { speed_m_s = 3, towards_deg = 0 }");
+    let text = TEXT.replace("[rain]\n", "[rain]\nvolume = \"closed-form\"\n").replace(
+        "vortex = { strength_m2_s = 40, center_m = [0, 1, 0], core_m = 2 }",
+        "uniform = { speed_m_s = 3, towards_deg = 0 }",
+    );
     let mut harness = window(&text);
     let path = downpour_view::key_path::KeyPath::parse("camera.near_m").unwrap();
     let far = downpour_view::plain::Plain::Number(9000.0);

@@ -57,7 +57,8 @@ impl ViewArguments {
         self.backend.check()?;
         if self.size.iter().any(|&edge| !(320..=MAX_WINDOW).contains(&edge)) {
             let [width, height] = self.size;
-            let message = format!("--size is {width}x{height}; allowed: 320 to {MAX_WINDOW} pixels along each edge");
+            let message =
+                format!("--size is {width}x{height}; allowed: 320 to {MAX_WINDOW} pixels along each edge");
             return Err(Failure::new(INPUT, message));
         }
         let device = self.device()?;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use egui::{RichText, ScrollArea};
 
 use super::App;
+use super::icons::{self, Icon};
 use crate::key_path::KeyPath;
 use crate::objects::{set_at, significant};
 use crate::plain::Plain;
@@ -229,29 +230,29 @@ impl Panel<'_> {
             let name = RichText::new(field.label());
             let name = if value.is_some() { name } else { name.color(QUIET) };
             let label = egui::Label::new(name).truncate().selectable(false);
-            let response = ui.add_sized([LABEL, 20.0], label);
+            let layout = egui::Layout::left_to_right(egui::Align::Center);
+            let name = ui.allocate_ui_with_layout(egui::vec2(LABEL, 20.0), layout, |ui| {
+                ui.set_min_width(LABEL);
+                ui.add(label)
+            });
+            let response = name.inner;
             let default = if field.default.is_empty() { "none" } else { &field.default };
             response.on_hover_text(format!("{}\n\n{}\ndefault: {default}", path, field.about));
             self.value(ui, field, value, path);
             let has_keys = value.is_some_and(|value| field.is_keyed && value.keys().is_some());
             if field.is_keyed && value.is_some() {
-                let mark = if has_keys {
-                    RichText::new("◆").color(okabe_ito::YELLOW)
-                } else {
-                    RichText::new("◇").color(QUIET)
-                };
-                let button = egui::Button::new(mark).frame(false);
-                let button = ui.add(button).on_hover_text("keyframe at the time of the clock");
-                if button.accessible_name(format!("key {path}")).clicked()
+                let (icon, color) =
+                    if has_keys { (Icon::Key, okabe_ito::YELLOW) } else { (Icon::NoKey, QUIET) };
+                let button = icons::button(ui, icon, color, format!("key {path}"));
+                if button.on_hover_text("keyframe at the time of the clock").clicked()
                     && let Some(value) = value
                 {
                     self.edits.push(Edit::Key(path.clone(), value.at(self.time_s)));
                 }
             }
             if value.is_some() {
-                let button = egui::Button::new(RichText::new("⟲").color(QUIET)).frame(false);
-                let button = ui.add(button).on_hover_text(format!("back to the default: {default}"));
-                if button.accessible_name(format!("reset {path}")).clicked() {
+                let button = icons::button(ui, Icon::Reset, QUIET, format!("reset {path}"));
+                if button.on_hover_text(format!("back to the default: {default}")).clicked() {
                     self.edits.push(Edit::Remove(path.clone()));
                 }
             }
@@ -413,12 +414,20 @@ fn drag(number: &mut f64, min: f64, max: f64, is_whole: bool) -> egui::DragValue
     } else {
         (number.abs() * 0.01).clamp(span.min(1.0) * 1.0e-3, span.max(1.0e-6) * 0.01)
     };
-    let decimals = if is_whole { 0 } else { 4 };
     egui::DragValue::new(number)
         .range(min..=max)
         .speed(speed)
-        .max_decimals(decimals)
         .clamp_existing_to_range(false)
+        .custom_formatter(move |number, _| short(number))
+}
+
+/// A number with the digits that it has, four decimals at most where it is not small.
+fn short(number: f64) -> String {
+    if number != 0.0 && number.abs() < 1.0e-2 {
+        return format!("{number}");
+    }
+    let text = format!("{number:.4}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 fn suffix(field: &Field) -> String {

@@ -31,13 +31,11 @@ impl App {
                 if let Some((text, is_error)) = &self.message {
                     let color = if *is_error { ui.visuals().error_fg_color } else { QUIET };
                     let room = ui.available_width() * 0.55;
-                    ui.add_sized(
-                        [room, 20.0],
-                        egui::Label::new(RichText::new(text).color(color))
-                            .truncate()
-                            .halign(egui::Align::Min),
-                    )
-                    .on_hover_text(text);
+                    let layout = egui::Layout::left_to_right(egui::Align::Center);
+                    ui.allocate_ui_with_layout(egui::vec2(room, 20.0), layout, |ui| {
+                        ui.add(egui::Label::new(RichText::new(text).color(color)).truncate())
+                            .on_hover_text(text);
+                    });
                 }
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                     self.figures_of_status(ui)

@@ -3,6 +3,7 @@
 use egui::{Key, Pos2, Rect, RichText, Sense, Stroke};
 use glam::DVec3;
 
+use super::icons::{self, Icon};
 use super::{App, Command};
 use crate::key_path::KeyPath;
 use crate::navigation::FreeEye;
@@ -133,11 +134,19 @@ impl App {
 
     fn transport(&mut self, ui: &mut egui::Ui) {
         ui.horizontal(|ui| {
-            if ui.button("⏮").on_hover_text("to the begin").accessible_name("to the begin").clicked() {
+            let color = ui.visuals().text_color();
+            if icons::button(ui, Icon::Begin, color, "to the begin".to_owned())
+                .on_hover_text("to the begin")
+                .clicked()
+            {
                 self.clock.time_s = self.clock.range_s[0];
             }
-            let (sign, name) = if self.clock.is_playing { ("⏸", "pause") } else { ("▶", "play") };
-            if ui.button(sign).on_hover_text("play or pause (Space)").accessible_name(name).clicked() {
+            let (icon, name) =
+                if self.clock.is_playing { (Icon::Pause, "pause") } else { (Icon::Play, "play") };
+            if icons::button(ui, icon, color, name.to_owned())
+                .on_hover_text("play or pause (Space)")
+                .clicked()
+            {
                 self.run(Command::Play);
             }
             ui.add(
@@ -162,7 +171,7 @@ impl App {
                 .accessible_name("range to");
             ui.checkbox(&mut self.clock.loops, "loop");
             let is_recording = self.timeline.flight.is_some();
-            let text = RichText::new("⏺ record flight");
+            let text = RichText::new("Record flight");
             let text = if is_recording { text.color(okabe_ito::VERMILION) } else { text };
             if ui
                 .button(text)

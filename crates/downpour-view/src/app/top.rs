@@ -89,10 +89,12 @@ impl App {
                         .accessible_name("radius of the brush");
                 }
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                    let dirty = self.document.is_dirty();
-                    let mark =
-                        if dirty { RichText::new("●").color(okabe_ito::ORANGE) } else { RichText::new("") };
-                    ui.label(mark).on_hover_text("not saved");
+                    if self.document.is_dirty() {
+                        let (rect, response) =
+                            ui.allocate_exact_size(egui::vec2(10.0, 14.0), egui::Sense::hover());
+                        ui.painter().circle_filled(rect.center(), 4.0, okabe_ito::ORANGE);
+                        response.on_hover_text("not saved");
+                    }
                     ui.label(RichText::new(self.document.title()).color(QUIET));
                 });
             });

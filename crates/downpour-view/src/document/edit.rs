@@ -150,7 +150,9 @@ pub(super) fn set_entry_name(
     with_list(document.as_table_mut(), list.steps(), &mut |list| match list {
         List::Tables(tables) => {
             let decor = tables.get_mut(index)?.decor_mut();
-            decor.set_prefix(named(&text(decor.prefix()), false, name.trim()));
+            // A table that was added stands after an empty line.
+            let before = decor.prefix().map_or_else(|| "\n".to_owned(), |raw| text(Some(raw)));
+            decor.set_prefix(named(&before, false, name.trim()));
             Some(())
         }
         List::Inline(array) => {
