@@ -44,6 +44,9 @@ const REST_S: f64 = 0.3;
 /// Time that a refined picture may take, ms: the next change waits for it.
 const REFINED_MS: f64 = 1500.0;
 
+/// Passes of the scene without rain.
+const PLATE_PASSES: [&str; 3] = ["scene", "skylight", "refine"];
+
 /// Options of an application.
 #[derive(Clone, Debug, Default)]
 pub struct AppOptions {
@@ -127,6 +130,8 @@ pub struct App {
     watched_s: f64,
     window: [u32; 2],
     fluid_ms: Option<f64>,
+    /// Time of the scene without rain at the size of the window, ms.
+    plate_ms: f64,
     /// Rectangle of the picture, in points.
     picture: egui::Rect,
 }
@@ -184,6 +189,7 @@ impl App {
             watched_s: 0.0,
             window: [0; 2],
             fluid_ms: None,
+            plate_ms: 0.0,
             picture: egui::Rect::ZERO,
         };
         app.look_for_recovery();
@@ -411,13 +417,20 @@ impl App {
                         self.texture = Some(context.load_texture("picture", image, TextureOptions::LINEAR))
                     }
                 }
-                // A picture of another size has a new plate, which later ones keep.
-                let is_first = self.drawn.as_ref().is_none_or(|before| before.size != drawn.size);
-                if self.asked_scale <= self.pace.scale() && !is_first {
-                    self.pace.note(drawn.frame_ms);
-                }
-                if !is_first {
-                    self.fluid_ms = Some(drawn.frame_ms);
+                // Where nothing moves, the scene without rain is made and refined once and then kept: it is no part of the pace.
+                let is_still = self.drawn.as_ref().is_none_or(|before| before.view == drawn.view);
+                let plate_ms: f64 = drawn
+                    .passes
+                    .iter()
+                    .filter(|(name, _)| PLATE_PASSES.contains(name))
+                    .map(|(_, ms)| ms)
+                    .sum();
+                let fluid_ms = if is_still { drawn.frame_ms - plate_ms } else { drawn.frame_ms };
+                self.plate_ms =
+                    if plate_ms > 1.0 { plate_ms / self.asked_scale.powi(2) } else { self.plate_ms };
+                if self.asked_scale <= self.pace.scale() && self.drawn.is_some() {
+                    self.pace.note(fluid_ms, self.plate_ms * self.pace.scale().powi(2));
+                    self.fluid_ms = Some(fluid_ms);
                 }
                 self.drawn = Some(drawn);
             }

@@ -13,8 +13,8 @@ use glam::DVec3;
 use super::drawn::{Drawn, Histogram, PictureView};
 use super::{Answer, DeviceChoice, Fault, Request};
 
-/// Pictures over which the scene without its rain is refined.
-pub(crate) const KEPT_FRAMES: u32 = 32;
+/// Pictures over which the scene without its rain is refined: each costs the scene, so that there are few.
+pub(crate) const KEPT_FRAMES: u32 = 4;
 
 /// A renderer with the weather that it has.
 #[derive(Debug)]

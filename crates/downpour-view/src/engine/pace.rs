@@ -6,6 +6,9 @@ pub const SCALES: [f64; 8] = [1.0, 0.75, 0.5, 0.375, 0.25, 0.1875, 0.125, 0.0625
 /// Time in which pictures are to come while something moves, ms.
 const TARGET_MS: f64 = 1000.0 / 30.0;
 
+/// Time that the scene of a larger picture may take, ms.
+const MAX_PLATE_MS: f64 = 700.0;
+
 /// Pictures in a row that must have time left before the next larger scale is tried.
 const PATIENCE: u32 = 6;
 
@@ -38,8 +41,9 @@ impl Pace {
         SCALES.get(self.index).copied().unwrap_or(1.0)
     }
 
-    /// Takes note of the time of a picture that was drawn at this scale, ms.
-    pub fn note(&mut self, frame_ms: f64) {
+    /// Takes note of the time of a picture that was drawn at this scale, ms. `plate_ms` is the time of its scene without rain, which
+    /// later pictures keep if nothing moves: a larger one is not begun where it would take more than a good half second.
+    pub fn note(&mut self, frame_ms: f64, plate_ms: f64) {
         // Time goes as the number of pixels at best, and a part of it does not shrink: one step down at a time, two if far off.
         if frame_ms > self.target_ms * 1.15 {
             self.early = 0;
@@ -49,7 +53,11 @@ impl Pace {
         }
         let Some(&larger) = self.index.checked_sub(1).and_then(|index| SCALES.get(index)) else { return };
         let pixels = (larger / self.scale()).powi(2);
-        self.early = if frame_ms * pixels < self.target_ms { self.early + 1 } else { 0 };
+        self.early = if frame_ms * pixels < self.target_ms && plate_ms * pixels < MAX_PLATE_MS {
+            self.early + 1
+        } else {
+            0
+        };
         if self.early >= PATIENCE {
             self.early = 0;
             self.index -= 1;
@@ -76,17 +84,27 @@ mod tests {
         {
             let mut pace = Pace::default();
             for _ in 0..200 {
-                pace.note(fixed_ms + full_ms * pace.scale() * pace.scale());
+                pace.note(fixed_ms + full_ms * pace.scale() * pace.scale(), 0.0);
             }
             assert_eq!(pace.scale(), expected, "{fixed_ms} + {full_ms}");
         }
+    }
+
+    /// Rain alone is fast before a scene that is slow: the scale does not rise to where the scene takes seconds.
+    #[test]
+    fn a_slow_scene_bounds_the_scale() {
+        let mut pace = Pace::default();
+        for _ in 0..200 {
+            pace.note(5.0, 4000.0 * pace.scale() * pace.scale());
+        }
+        assert_eq!(pace.scale(), 0.375);
     }
 
     #[test]
     fn a_slow_picture_among_fast_ones_does_not_swing() {
         let mut pace = Pace::default();
         for i in 0..100 {
-            pace.note(if i == 50 { 45.0 } else { 20.0 });
+            pace.note(if i == 50 { 45.0 } else { 20.0 }, 0.0);
         }
         assert_eq!(pace.scale(), 0.1875, "20 ms leave no room for the next larger scale");
         assert_eq!(pace.size([960, 540], 0.25), [240, 135]);
