@@ -414,7 +414,7 @@ impl App {
                 match &mut self.texture {
                     Some(texture) => texture.set(image, TextureOptions::LINEAR),
                     None => {
-                        self.texture = Some(context.load_texture("picture", image, TextureOptions::LINEAR))
+                        self.texture = Some(context.load_texture("picture", image, TextureOptions::LINEAR));
                     }
                 }
                 // Where nothing moves, the scene without rain is made and refined once and then kept: it is no part of the pace.
@@ -426,10 +426,14 @@ impl App {
                     .map(|(_, ms)| ms)
                     .sum();
                 let fluid_ms = if is_still { drawn.frame_ms - plate_ms } else { drawn.frame_ms };
-                self.plate_ms =
-                    if plate_ms > 1.0 { plate_ms / self.asked_scale.powi(2) } else { self.plate_ms };
+                self.plate_ms = if plate_ms > 1.0 {
+                    plate_ms / (self.asked_scale * self.asked_scale)
+                } else {
+                    self.plate_ms
+                };
                 if self.asked_scale <= self.pace.scale() && self.drawn.is_some() {
-                    self.pace.note(fluid_ms, self.plate_ms * self.pace.scale().powi(2));
+                    let scale = self.pace.scale();
+                    self.pace.note(fluid_ms, self.plate_ms * scale * scale);
                     self.fluid_ms = Some(fluid_ms);
                 }
                 self.drawn = Some(drawn);
@@ -477,7 +481,7 @@ impl App {
             }
             let larger = crate::engine::SCALES.iter().rev().find(|&&scale| scale > self.asked_scale * 1.01);
             match larger {
-                Some(&scale) if drawn.frame_ms * (scale / self.asked_scale).powi(2) < REFINED_MS => scale,
+                Some(&scale) if drawn.frame_ms * squared(scale / self.asked_scale) < REFINED_MS => scale,
                 _ => {
                     self.repeats += 1;
                     self.asked_scale
@@ -561,4 +565,8 @@ impl App {
         };
         self.noted(result);
     }
+}
+
+fn squared(value: f64) -> f64 {
+    value * value
 }

@@ -79,7 +79,7 @@ pub fn run(
     file: &str,
     script: &str,
     document: Document,
-    options: ScriptOptions,
+    options: &ScriptOptions,
     told: &mut dyn FnMut(&str),
 ) -> Result<(), ScriptError> {
     let failed = |line: usize, message: String| ScriptError { file: file.to_owned(), line, message };
@@ -306,7 +306,7 @@ impl Session {
     fn paint(&mut self, words: &[&str]) -> Result<(), String> {
         self.settle()?;
         let drawn = self.app.drawn().cloned().ok_or("there is no picture")?;
-        if words.is_empty() || words.len() % 3 != 0 {
+        if words.is_empty() || !words.len().is_multiple_of(3) {
             return Err("allowed: paint X Z RADIUS, once or more".to_owned());
         }
         for spot in 0..words.len() / 3 {

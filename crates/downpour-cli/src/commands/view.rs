@@ -75,7 +75,7 @@ impl ViewArguments {
         let steps = script::read(path).map_err(|message| Failure::new(FILES, message))?;
         let options = ScriptOptions { size: self.size, app };
         let name = path.display().to_string();
-        script::run(&name, &steps, document, options, &mut |text| stream::message(text))
+        script::run(&name, &steps, document, &options, &mut |text| stream::message(text))
             .map_err(|error| Failure::new(INPUT, error.to_string()))
     }
 

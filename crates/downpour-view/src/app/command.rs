@@ -216,7 +216,7 @@ impl App {
                 }
             }
             Command::SelectAll => {
-                self.selected = self.objects().into_iter().map(|object| object.id).collect()
+                self.selected = self.objects().into_iter().map(|object| object.id).collect();
             }
             Command::SelectNone => {
                 self.selected.clear();

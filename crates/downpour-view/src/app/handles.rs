@@ -165,7 +165,7 @@ impl App {
     /// Values of keys for a pointer.
     fn dragged(&self, drag: &Drag, pointer: Pos2) -> Vec<(KeyPath, Plain)> {
         let view = &drag.view;
-        let [begin, now] = [drag.begin, pointer].map(|at| view.ray(self.from_screen(at)));
+        let [begin, now] = [drag.begin, pointer].map(|at| view.ray(self.on_picture(at)));
         let at = drag.object.position.as_ref().map_or(drag.anchor, |(_, at)| *at);
         let snapped =
             |value: f64, step: f64| if self.overlay.snaps { (value / step).round() * step } else { value };

@@ -20,9 +20,9 @@ pub(super) enum Icon {
 }
 
 /// A button with a sign. Its name is read aloud.
-pub(super) fn button(ui: &mut Ui, icon: Icon, color: Color32, name: String) -> Response {
+pub(super) fn button(ui: &mut Ui, icon: Icon, color: Color32, name: &str) -> Response {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(18.0), Sense::click());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
     let color = if response.hovered() || response.has_focus() { Color32::WHITE } else { color };
     if response.has_focus() {
         let stroke = ui.visuals().selection.stroke;

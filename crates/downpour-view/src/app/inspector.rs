@@ -243,7 +243,7 @@ impl Panel<'_> {
             if field.is_keyed && value.is_some() {
                 let (icon, color) =
                     if has_keys { (Icon::Key, okabe_ito::YELLOW) } else { (Icon::NoKey, QUIET) };
-                let button = icons::button(ui, icon, color, format!("key {path}"));
+                let button = icons::button(ui, icon, color, &format!("key {path}"));
                 if button.on_hover_text("keyframe at the time of the clock").clicked()
                     && let Some(value) = value
                 {
@@ -251,7 +251,7 @@ impl Panel<'_> {
                 }
             }
             if value.is_some() {
-                let button = icons::button(ui, Icon::Reset, QUIET, format!("reset {path}"));
+                let button = icons::button(ui, Icon::Reset, QUIET, &format!("reset {path}"));
                 if button.on_hover_text(format!("back to the default: {default}")).clicked() {
                     self.edits.push(Edit::Remove(path.clone()));
                 }
@@ -309,7 +309,7 @@ impl Panel<'_> {
                 response.response.accessible_name(path.to_string());
             }
             Kind::Vector { count, min, max } => {
-                self.vector(ui, field, value, path, now.as_ref(), *count, [*min, *max])
+                self.vector(ui, field, value, path, now.as_ref(), *count, [*min, *max]);
             }
             Kind::Text | Kind::Raw => self.raw(ui, field, value, path),
             Kind::Table(_) | Kind::List(_) | Kind::Variants(_) => {}

@@ -70,7 +70,7 @@ impl App {
     }
 
     /// Place in the picture of a place in the window.
-    pub(super) fn from_screen(&self, at: Pos2) -> DVec2 {
+    pub(super) fn on_picture(&self, at: Pos2) -> DVec2 {
         let offset = at - self.picture.min;
         let size = self.picture.size();
         DVec2::new(f64::from(offset.x / size.x), f64::from(offset.y / size.y))
@@ -245,7 +245,8 @@ impl App {
             if speed < f64::from(STILL_M_S) {
                 continue;
             }
-            let fade = (1.0 - (2.0 * age / LIFE_S - 1.0).powi(2)) as f32;
+            let middle_age = 2.0 * age / LIFE_S - 1.0;
+            let fade = (1.0 - middle_age * middle_age) as f32;
             let color = speed_color(speed).gamma_multiply(fade);
             for line in self.screen_lines(&tail, view) {
                 if let Some(end) = line.last() {

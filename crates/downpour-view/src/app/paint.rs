@@ -19,7 +19,7 @@ const REACH_M: f64 = 200.0;
 impl App {
     /// The ground under a place of the window.
     fn ground(&self, at: egui::Pos2, drawn: &Drawn) -> Option<DVec3> {
-        let ray = drawn.view.ray(self.from_screen(at));
+        let ray = drawn.view.ray(self.on_picture(at));
         let distance = drawn.distance(ray).filter(|distance| *distance < REACH_M)?;
         Some(drawn.view.eye + ray * distance)
     }

@@ -38,7 +38,7 @@ impl App {
                     });
                 }
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                    self.figures_of_status(ui)
+                    self.figures_of_status(ui);
                 });
             });
         });

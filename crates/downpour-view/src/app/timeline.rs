@@ -30,10 +30,13 @@ pub(super) struct Timeline {
     pub(super) flight: Option<Flight>,
 }
 
+/// Time in s, position in m, yaw and pitch in degrees.
+type FlightKey = (f64, DVec3, f64, f64);
+
 /// A flight of the eye, a key every quarter of a second.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Flight {
-    keys: Vec<(f64, DVec3, f64, f64)>,
+    keys: Vec<FlightKey>,
 }
 
 /// Time between keys of a flight, s.
@@ -63,7 +66,7 @@ impl Flight {
         let hundredths = |value: f64| Plain::Number((value * 100.0).round() / 100.0);
         // Angles of the file are within a turn to both sides.
         let turns = self.keys.first().map_or(0.0, |&(_, _, yaw, _)| (yaw / 360.0).round() * 360.0);
-        let all = |value: &dyn Fn(&(f64, DVec3, f64, f64)) -> Plain| {
+        let all = |value: &dyn Fn(&FlightKey) -> Plain| {
             let keys: Vec<(f64, Plain)> = self.keys.iter().map(|key| (rounded(key.0), value(key))).collect();
             if keys.is_empty() { Plain::Number(0.0) } else { Plain::of_keys(&keys) }
         };
@@ -135,18 +138,12 @@ impl App {
     fn transport(&mut self, ui: &mut egui::Ui) {
         ui.horizontal(|ui| {
             let color = ui.visuals().text_color();
-            if icons::button(ui, Icon::Begin, color, "to the begin".to_owned())
-                .on_hover_text("to the begin")
-                .clicked()
-            {
+            if icons::button(ui, Icon::Begin, color, "to the begin").on_hover_text("to the begin").clicked() {
                 self.clock.time_s = self.clock.range_s[0];
             }
             let (icon, name) =
                 if self.clock.is_playing { (Icon::Pause, "pause") } else { (Icon::Play, "play") };
-            if icons::button(ui, icon, color, name.to_owned())
-                .on_hover_text("play or pause (Space)")
-                .clicked()
-            {
+            if icons::button(ui, icon, color, name).on_hover_text("play or pause (Space)").clicked() {
                 self.run(Command::Play);
             }
             ui.add(

@@ -52,7 +52,8 @@ impl Pace {
             return;
         }
         let Some(&larger) = self.index.checked_sub(1).and_then(|index| SCALES.get(index)) else { return };
-        let pixels = (larger / self.scale()).powi(2);
+        let ratio = larger / self.scale();
+        let pixels = ratio * ratio;
         self.early = if frame_ms * pixels < self.target_ms && plate_ms * pixels < MAX_PLATE_MS {
             self.early + 1
         } else {
