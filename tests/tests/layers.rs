@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use downpour_tests::sources::rust_files;
 
 /// The layer of each crate, as in ARCHITECTURE.md: a crate names those of lower layers alone.
-const LAYERS: [(&str, u32); 19] = [
+const LAYERS: [(&str, u32); 20] = [
     ("downpour-shaders", 0),
     ("downpour-math", 1),
     ("downpour-gpu", 2),
@@ -27,8 +27,9 @@ const LAYERS: [(&str, u32); 19] = [
     ("downpour-trace", 7),
     ("downpour-specimen", 8),
     ("downpour", 9),
-    ("downpour-cli", 10),
-    ("downpour-tests", 10),
+    ("downpour-view", 10),
+    ("downpour-cli", 11),
+    ("downpour-tests", 11),
 ];
 
 fn root() -> PathBuf {

@@ -13,6 +13,8 @@ mod schema;
 mod specimen;
 mod streaks;
 mod street;
+#[cfg(feature = "view")]
+mod view;
 mod wind;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -36,6 +38,8 @@ pub(crate) enum Command {
     Wind(wind::WindArguments),
     Lattice(lattice::LatticeArguments),
     Street(street::StreetArguments),
+    #[cfg(feature = "view")]
+    View(view::ViewArguments),
     Adapters(adapters::AdaptersArguments),
 }
 
@@ -52,6 +56,8 @@ impl Command {
             Self::Wind(arguments) => arguments.run(interrupt),
             Self::Lattice(arguments) => arguments.run(interrupt),
             Self::Street(arguments) => arguments.run(interrupt),
+            #[cfg(feature = "view")]
+            Self::View(arguments) => arguments.run(),
             Self::Adapters(arguments) => arguments.run(),
         }
     }

@@ -77,7 +77,7 @@ fn texts() -> BTreeMap<String, BTreeMap<String, String>> {
     let mut texts: BTreeMap<String, BTreeMap<String, String>> = BTreeMap::new();
     let mut table = String::new();
     for row in KEYS.lines().filter(|line| line.starts_with("| `") || line.starts_with("| **")) {
-        let cells: Vec<&str> = row.trim_matches('|').split(" | ").map(str::trim).collect();
+        let cells: Vec<&str> = row.trim().trim_matches('|').split('|').map(str::trim).collect();
         let [names, range, default, meaning] =
             [0, 1, 2, 3].map(|k| cells.get(k).copied().unwrap_or_default());
         let about = [range, meaning].map(str::trim).into_iter().filter(|text| !text.is_empty());

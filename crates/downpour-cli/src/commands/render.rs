@@ -160,6 +160,7 @@ impl RenderArguments {
         let Input { weather, loaded, .. } = input;
         reserve(weather.size)?;
         let options = RendererOptions {
+            kept_frames: 0,
             samples: self.samples,
             sky_rays: self.sky_rays,
             refraction: self.refraction.map(RefractionForm::from),

@@ -1,0 +1,200 @@
+//! Pictures that were drawn, with what the window shows about them.
+
+use std::sync::Arc;
+
+use downpour::sim::field::VisibleDrops;
+use downpour::trace::stage::Stage;
+use glam::{DVec2, DVec3};
+
+/// A picture.
+#[derive(Debug)]
+pub struct Drawn {
+    /// Number of the question.
+    pub number: u64,
+    /// Revision of the document that it shows.
+    pub revision: u64,
+    /// Time, s.
+    pub time_s: f64,
+    /// Columns and rows.
+    pub size: [u32; 2],
+    /// Samples along an edge of a pixel.
+    pub samples: u32,
+    /// Pixels, sRGB, rows from the top.
+    pub pixels: Vec<[u8; 3]>,
+    /// The camera that it is seen by.
+    pub view: PictureView,
+    /// The scene, for rays to its surfaces.
+    pub stage: Arc<Stage>,
+    /// Number of drops in it.
+    pub drops_drawn: usize,
+    /// The drops that it could show, and the indices of those in it, nearest first, where they were asked for.
+    pub drops: Option<(VisibleDrops, Vec<u32>)>,
+    /// Time of each pass, ms.
+    pub passes: Vec<(&'static str, f64)>,
+    /// Time from the question to the picture, ms.
+    pub frame_ms: f64,
+    /// Adapter that drew it.
+    pub adapter: String,
+    /// Brightness of its pixels.
+    pub histogram: Histogram,
+}
+
+/// A camera in f64 with its picture's edges.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PictureView {
+    /// Position of the eye, m.
+    pub eye: DVec3,
+    /// Unit vector to the right.
+    pub right: DVec3,
+    /// Unit vector up in the picture.
+    pub up: DVec3,
+    /// Unit view direction.
+    pub forward: DVec3,
+    /// Tangent of half the vertical field of view.
+    pub half_height: f64,
+    /// Width over height.
+    pub aspect: f64,
+}
+
+impl PictureView {
+    /// The camera of an eye, up +Y.
+    #[must_use]
+    pub fn new(eye: DVec3, forward: DVec3, fov_y: f64, aspect: f64) -> Self {
+        let forward = forward.try_normalize().unwrap_or(DVec3::NEG_Z);
+        let right = forward.cross(DVec3::Y).try_normalize().unwrap_or(DVec3::X);
+        let half_height = downpour::math::ops::f64::tan(fov_y * 0.5);
+        Self { eye, right, up: right.cross(forward), forward, half_height, aspect }
+    }
+
+    /// Place of a point in the picture, 0 to 1 from the upper left corner, and its depth in m; `None` behind the eye.
+    #[must_use]
+    pub fn project(&self, point: DVec3) -> Option<(DVec2, f64)> {
+        let offset = point - self.eye;
+        let depth = offset.dot(self.forward);
+        (depth > 1.0e-3).then(|| {
+            let x = offset.dot(self.right) / (depth * self.half_height * self.aspect);
+            let y = offset.dot(self.up) / (depth * self.half_height);
+            (DVec2::new(0.5 + 0.5 * x, 0.5 - 0.5 * y), depth)
+        })
+    }
+
+    /// Unit direction of the ray through a place of the picture.
+    #[must_use]
+    pub fn ray(&self, place: DVec2) -> DVec3 {
+        let (x, y) = (2.0 * place.x - 1.0, 1.0 - 2.0 * place.y);
+        let aside = self.right * (x * self.half_height * self.aspect) + self.up * (y * self.half_height);
+        (self.forward + aside).normalize()
+    }
+
+    /// Meters at a depth for the height of the picture.
+    #[must_use]
+    pub fn height_at(&self, depth: f64) -> f64 {
+        2.0 * self.half_height * depth
+    }
+}
+
+/// Bins of a histogram.
+pub(super) const BINS: usize = 64;
+
+/// Distribution of the brightness of pixels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Histogram {
+    /// Fraction of the pixels by their luma, from black to white.
+    pub bins: [f32; BINS],
+    /// Fraction of the pixels with a channel that is white.
+    pub white: f32,
+    /// Fraction of the pixels that are black.
+    pub black: f32,
+}
+
+impl Histogram {
+    /// Histogram of pixels, by their luma of Rec. 709.
+    #[must_use]
+    pub fn of(pixels: &[[u8; 3]]) -> Self {
+        let mut counts = [0u32; BINS];
+        let (mut white, mut black) = (0u32, 0u32);
+        for &[r, g, b] in pixels {
+            let luma = (2126 * u32::from(r) + 7152 * u32::from(g) + 722 * u32::from(b)) / 10_000;
+            counts[(luma as usize * BINS) / 256] += 1;
+            white += u32::from(r.max(g).max(b) == 255);
+            black += u32::from(r.max(g).max(b) == 0);
+        }
+        let all = (pixels.len() as f32).max(1.0);
+        Self {
+            bins: counts.map(|count| count as f32 / all),
+            white: white as f32 / all,
+            black: black as f32 / all,
+        }
+    }
+}
+
+impl Drawn {
+    /// The nearest surface along a ray from the eye, m from it; `None` for the sky.
+    #[must_use]
+    pub fn distance(&self, direction: DVec3) -> Option<f64> {
+        self.nearest(self.view.eye, direction)
+    }
+
+    /// The surface below a point, m.
+    #[must_use]
+    pub fn ground_below(&self, point: DVec3) -> Option<DVec3> {
+        self.nearest(point, DVec3::NEG_Y).map(|distance| point - DVec3::Y * distance)
+    }
+
+    fn nearest(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
+        let origin = (origin - self.stage.origin).as_vec3().to_array();
+        let data = &self.stage.data;
+        let direction = direction.as_vec3().to_array();
+        let hit =
+            downpour::bvh::bvh_nearest(&data.nodes, &data.triangles, origin, direction, 0.0, f32::INFINITY);
+        hit.map(|hit| f64::from(hit.distance))
+    }
+
+    /// Corners of the box round the scene, m.
+    #[must_use]
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        let (low, high) = self.stage.data.bounds();
+        (low.as_dvec3() + self.stage.origin, high.as_dvec3() + self.stage.origin)
+    }
+
+    /// The list of drops that are drawn, as `downpour render --dump-drops` writes it, where it was asked for.
+    #[must_use]
+    pub fn drops_csv(&self) -> Option<String> {
+        use std::fmt::Write as _;
+        let mut text = String::from("id,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,diameter_mm,kind\n");
+        let (drops, in_picture) = self.drops.as_ref()?;
+        for drop in in_picture.iter().filter_map(|&index| drops.drops.get(index as usize)) {
+            let [x, y, z] = drop.position.to_array();
+            let [vx, vy, vz] = drop.velocity.map(|v| v + 0.0);
+            let (mm, kind) = (drop.diameter * 1.0e3, drop.kind.name());
+            let _ = writeln!(text, "{},{x},{y},{z},{vx},{vy},{vz},{mm},{kind}", drop.id);
+        }
+        Some(text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ray_goes_through_its_place() {
+        let view = PictureView::new(DVec3::new(1.0, 2.0, 3.0), DVec3::new(0.3, -0.2, -1.0), 0.9, 16.0 / 9.0);
+        for place in [DVec2::new(0.5, 0.5), DVec2::new(0.1, 0.9), DVec2::new(0.97, 0.2)] {
+            let (found, depth) = view.project(view.eye + view.ray(place) * 7.0).unwrap();
+            assert!((found - place).length() < 1.0e-12 && depth > 0.0 && depth <= 7.0 + 1.0e-9);
+        }
+        assert_eq!(view.project(view.eye - view.forward), None);
+        // The upper edge is half the field of view above the center.
+        let angle = view.ray(DVec2::new(0.5, 0.0)).angle_between(view.forward);
+        assert!((angle - 0.45).abs() < 1.0e-12);
+    }
+
+    #[test]
+    fn the_histogram_counts_every_pixel_once() {
+        let histogram = Histogram::of(&[[0, 0, 0], [255, 255, 255], [128, 128, 128], [128, 128, 128]]);
+        assert_eq!(histogram.bins.iter().sum::<f32>(), 1.0);
+        assert_eq!((histogram.bins[0], histogram.bins[32], histogram.bins[63]), (0.25, 0.5, 0.25));
+        assert_eq!((histogram.white, histogram.black), (0.25, 0.25));
+    }
+}
