@@ -16,7 +16,8 @@ const ALONE: &[(&str, &[&str])] = &[
     ("downpour-wind", &["", "wgpu"]),
     ("downpour-render", &["", "wgpu"]),
     ("downpour", &["", "wgpu"]),
-    ("downpour-cli", &["", "gpu", "video"]),
+    ("downpour-view", &[""]),
+    ("downpour-cli", &["", "gpu", "video", "view"]),
 ];
 
 /// Every test of the workspace, with documentation tests; `all`: and the sweeps that take minutes.
