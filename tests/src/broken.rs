@@ -124,6 +124,8 @@ pub const BROKEN: &[Broken] = &[
         right: "(v * 3 + along) / 4",
         wrong: "(v * 3 + along) >> vec2u(2u)",
     },
+    Broken { function: "streak_cell_weight", right: "5.0 / 12.0", wrong: "4.0 / 12.0" },
+    Broken { function: "drop_glint_pixel", right: "(1.0 - offset.x)", wrong: "(0.9 - offset.x)" },
     Broken { function: "drop_glint_angle", right: "0.25 - octant", wrong: "0.25 + octant" },
     Broken { function: "drop_glint_rousseau", right: "across * (1.0 + lit)", wrong: "across * (1.0 - lit)" },
     Broken { function: "streak_weight", right: "(weights.y - weights.x)", wrong: "(weights.y + weights.x)" },

@@ -132,7 +132,7 @@ fn hosts() -> Vec<Host> {
         host!(DropLightFrame as "DropLightFrame" in &render::drop_light::DROP_LIGHT,
             count, form, glints, first_light, terms),
         host!(GlassPictureDrop as "GlassPictureDrop" in &render::glass::WATER,
-            center, radius, sphere, along, behind, lean, droop, unused, lobes),
+            center, radius, sphere, along, behind, lean, droop, axis, lobes),
         host!(GlassPictureFrame as "GlassPictureFrame" in &render::glass::GLASS_PICTURE,
             camera, across, columns, down, rows, outward, bins, corner, cells,
             size, wet_size, lens, focus, fresnel, room, samples, last, capture_size, capture_last, capture_texel, film,
@@ -169,13 +169,14 @@ fn hosts() -> Vec<Host> {
         host!(WindFieldGrid as "WindFieldGrid" in &wind::FIELD, low, primitives, cell, modes, per_cell, size),
         host!(WindTurbulenceMode as "WindTurbulenceMode" in &wind::TURBULENCE, wave, phase, amplitude),
         host!(GlassSizeRow as "GlassSizeRow" in &lattice::glass::SIZE,
-            radius, hold, slow, air, sphere, loss, unused_1, unused_2),
+            radius, hold, slow, air, sphere, loss, ridge, ahead),
         host!(GlassTable as "GlassTable" in &lattice::glass::TABLE, rows, landing),
         host!(GlassBlade as "GlassBlade" in &lattice::glass::BLADE,
-            before, after, pivot, reach, turn, leaves, unused_1, unused_2),
+            before, after, pivot, reach, turn, leaves, film, unused),
         host!(GlassFrame as "GlassFrame" in &lattice::glass::FRAME,
             size, seed, first_step, first_clock, clock_step, blades, gravity, air, kinetic, trail_chance,
-            trail_mass, wet_life, wet_ease, affinity_pull, wet_pull, unused, rain_few, rain_many),
+            trail_mass, wet_life, wet_ease, affinity_pull, wet_pull, ridge_drain, ridge_hold, ridge_fresh, unused_1,
+            unused_2, rain_few, rain_many),
     ]
 }
 

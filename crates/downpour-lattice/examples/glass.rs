@@ -36,6 +36,7 @@ fn windshield() -> GlassOptions {
             to_rad: 172f64.to_radians(),
             period_s: 3.1,
         },
+        film_m: 0.5e-6,
         worn: vec![GlassWornBand { from_m: 0.24, to_m: 0.25, leaves: 0.6 }],
     };
     GlassOptions {

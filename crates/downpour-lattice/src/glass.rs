@@ -5,7 +5,7 @@
 //! mean of the contact angles. Drops whose disks touch merge, at the position of the larger. A drop begins to slide
 //! where the forces along the pane exceed Furmidge's retention ([`GlassContact`]), which the paper leaves to the
 //! artist. It then moves to one of the three cells ahead of it (ahead along its velocity, not always below), chosen at
-//! random by affinity and wetness, and leaves beads behind.
+//! random by affinity and wetness, and leaves beads behind. Water that a blade sweeps is a ridge along it ([`ridge`]).
 //!
 //! Mass is in whole nanoliters, and all forces, velocities and choices are integers: the water that came in is exactly
 //! the water that is stored and that went out, and a GPU has the same bits. Only normals are `f32`.
@@ -34,6 +34,7 @@ pub mod frame;
 pub mod height;
 pub mod motion;
 pub mod normal;
+pub mod ridge;
 pub mod size;
 
 pub use contact::GlassContact;

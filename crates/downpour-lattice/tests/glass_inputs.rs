@@ -19,6 +19,7 @@ fn wiper() -> GlassWiper {
         inner_m: 0.001,
         outer_m: 0.008,
         motion: GlassWiperMotion::Sweep { from_rad: 0.0, to_rad: 3.0, period_s: 1.0 },
+        film_m: 0.0,
         worn: Vec::new(),
     }
 }

@@ -32,6 +32,7 @@ fn wiper(worn: Vec<GlassWornBand>) -> GlassWiper {
         inner_m: 0.006,
         outer_m: 0.036,
         motion: GlassWiperMotion::Keys(vec![key(0.0, 0.05), key(1.0, 3.09)]),
+        film_m: 0.0,
         worn,
     }
 }
@@ -51,6 +52,7 @@ fn storm(size: [u32; 2]) -> GlassOptions {
             inner_m: 0.002,
             outer_m: 0.012,
             motion: GlassWiperMotion::Sweep { from_rad: 0.2, to_rad: 2.9, period_s: 1.1 },
+            film_m: 1.0e-6,
             worn: vec![GlassWornBand { from_m: 0.004, to_m: 0.006, leaves: 0.4 }],
         }],
         seed: 11,

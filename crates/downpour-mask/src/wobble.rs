@@ -10,8 +10,8 @@
 //! whose direction is the outward normal. The surface is found by the steps of [`mask_trace_step`] from the spheroid that the mode
 //! (2,0) makes of the drop, as in [`trace`](crate::trace).
 //!
-//! Light is split at each interface into transmitted and reflected light, unpolarized each time, as in an RGB path tracer. The
-//! remainder after the third exit leaves with it.
+//! Light is split at each interface into transmitted and reflected light, unpolarized each time, as in an RGB path tracer. What is
+//! left after the third exit leaves elsewhere: of a ray at the rim more than half of what has come so far. It is in no fraction.
 //!
 //! Limits: a ray meets a drop once on entry and once on exit (with amplitudes of 0.2 and 0.1 it hardly has a
 //! hollow); geometrical optics; light that has not left after `MASK_WOBBLE_BOUNCES` interfaces is not followed.
@@ -49,7 +49,7 @@ pub struct WobbleDrop<R> {
 pub struct WobbleLight<R> {
     /// Directions, of length 1; 0 for a missing exit.
     pub exits: [[R; 3]; 4],
-    /// Fractions of the light; 1 minus their sum is lost.
+    /// Fractions of the light; what they leave of 1 is not followed.
     pub fractions: [R; 4],
     /// Number of interfaces up to the exit (from 1), by which the paths of neighboring rays are compared; 0 for a missing exit.
     pub interfaces: [R; 4],
@@ -170,12 +170,6 @@ pub fn mask_wobble_light<R: Real>(drop: &WobbleDrop<R>, origin: [R; 3], directio
         rest = R::select(goes_on, rest * kept, rest);
         inside = optics_reflect(inside, normal);
         found = next;
-    }
-    for exit in 1..=MASK_WOBBLE_EXITS as usize {
-        let number = one.constant(exit as f64);
-        let is_last =
-            one.both(number.less(found + one.constant(0.5)), found.less(number + one.constant(0.5)));
-        light.fractions[exit] = light.fractions[exit] + R::select(is_last, rest, zero);
     }
     light
 }

@@ -33,6 +33,7 @@ mod meet;
 mod pane;
 mod picture;
 mod radiance;
+mod ridge;
 mod shade;
 #[cfg(not(feature = "parity"))]
 pub(crate) mod water;

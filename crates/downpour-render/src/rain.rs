@@ -20,6 +20,7 @@ pub mod drops;
 mod drops_atlas;
 mod drops_capture;
 mod drops_frame;
+mod drops_glint;
 #[doc(hidden)]
 pub mod drops_mask;
 mod drops_shade;

@@ -62,6 +62,35 @@ pub struct Impact {
     pub time_s: f64,
 }
 
+/// Drop that may hit something within a span of time.
+struct Candidate {
+    id: u64,
+    /// Diameter, m.
+    diameter: f32,
+    /// Terminal speed, m/s.
+    speed: f64,
+    /// Positions at the beginning and at the end if nothing stops it; its path is nearly straight.
+    ends: [DVec3; 2],
+}
+
+impl Candidate {
+    /// Middle of its path, and half of its length, m.
+    fn ball(&self) -> (DVec3, f64) {
+        let [from, to] = self.ends;
+        (from.midpoint(to), 0.5 * from.distance(to) + CURVED_M)
+    }
+}
+
+/// Impacts of a class that are asked for: those in a box, in parts of it, of some drops.
+struct OfClass<P, W> {
+    bounds: Bounds,
+    in_part: P,
+    wanted: W,
+}
+
+/// Distance, m, of a path of less than a second in gusts from the line between its ends, at most.
+const CURVED_M: f64 = 0.5;
+
 impl RainField {
     /// Impacts in a box within a span of time, s, without its beginning and including its end, of drops from a
     /// diameter in m on. Their order depends on the query only.
@@ -79,22 +108,23 @@ impl RainField {
     ) -> Result<Vec<Impact>, SimError> {
         check_box(low, high)?;
         let all = |class: &Class| {
-            (class.largest >= min_diameter).then_some((Bounds { low, high }, |_: &Bounds| true))
+            let bounds = Bounds { low, high };
+            let wanted = |drop: &Candidate| f64::from(drop.diameter) >= min_diameter;
+            (class.largest >= min_diameter).then_some(OfClass { bounds, in_part: |_: &Bounds| true, wanted })
         };
-        let mut impacts = self.impacts_of(&Facets::new(obstacles), span_s, all, |_| true)?;
-        impacts.retain(|impact| f64::from(impact.diameter) >= min_diameter);
-        Ok(impacts)
+        self.impacts_of(&Facets::new(obstacles), 0.0, span_s, all, |impact| Some(*impact))
     }
 
-    /// Impacts of a span of time, of the drops that are `wanted`: of each class in the box that `bounds_of` returns, in those parts of
-    /// it that the function beside it wants.
-    fn impacts_of<P: Fn(&Bounds) -> bool>(
+    /// What `make` makes of the impacts of a span of time: of each class those that `of_class` says. `make` is asked before it is known
+    /// whether the drop comes from the sky. Impacts on surfaces whose normal has a vertical component below `least_level` may be left out.
+    fn impacts_of<P: Fn(&Bounds) -> bool, W: Fn(&Candidate) -> bool + Sync, T: Send>(
         &self,
         facets: &Facets<'_>,
+        least_level: f32,
         span_s: [f64; 2],
-        bounds_of: impl Fn(&Class) -> Option<(Bounds, P)>,
-        wanted: impl Fn(u64) -> bool + Sync,
-    ) -> Result<Vec<Impact>, SimError> {
+        of_class: impl Fn(&Class) -> Option<OfClass<P, W>>,
+        make: impl Fn(&Impact) -> Option<T> + Sync,
+    ) -> Result<Vec<T>, SimError> {
         let obstacles = facets.obstacles;
         let [begin, end] = span_s;
         check_span(span_s)?;
@@ -104,25 +134,25 @@ impl RainField {
         let corners = [root.low, root.high].map(|corner| Vec3::from(corner).as_dvec3() + obstacles.origin);
         let ways = Ways::new(self, begin, end);
         let within = |class| {
-            let (wide, part_wanted) = bounds_of(class)?;
+            let OfClass { bounds: wide, in_part, wanted } = of_class(class)?;
             // There are no impacts without obstacles.
             let low = wide.low.max(corners[0] - 1.0e-3);
             let high = wide.high.min(corners[1] + 1.0e-3);
-            low.cmplt(high).all().then_some((class, Bounds { low, high }, part_wanted))
+            low.cmplt(high).all().then_some((class, Bounds { low, high }, in_part, wanted))
         };
-        let of_classes: Vec<(&Class, Bounds, P)> = self.classes.iter().filter_map(within).collect();
-        let all = of_classes.iter().map(|(_, bounds, _)| *bounds).reduce(|a, b| a.union(&b));
+        let of_classes: Vec<(&Class, Bounds, P, W)> = self.classes.iter().filter_map(within).collect();
+        let all = of_classes.iter().map(|(_, bounds, ..)| *bounds).reduce(|a, b| a.union(&b));
         let Some(all) = all else { return Ok(Vec::new()) };
-        let mut places = Places::new(obstacles, &all);
-        let mut boxes: Vec<(&Class, Bounds, Bounds)> = Vec::new();
-        for (class, bounds, part_wanted) in of_classes {
+        let mut places = Places::new(obstacles, &all, least_level);
+        let mut boxes: Vec<(&Class, &W, Bounds, Bounds)> = Vec::new();
+        for (class, bounds, in_part, wanted) in &of_classes {
             let way = ways.bounds(class.speeds);
             // Drops that at the end are where those are that have been in a place.
             let swept = |place: Bounds| Bounds { low: place.low + way.low, high: place.high + way.high };
             // Whole columns are looked at, and of each chain in them whether it has drops in the box.
             let around = way.high - way.low + DVec3::new(class.edge, class.period, class.edge);
-            let parts = places.within(&bounds, around, part_wanted);
-            boxes.extend(parts.into_iter().map(|place| (class, place, swept(place))));
+            let parts = places.within(bounds, around, in_part);
+            boxes.extend(parts.into_iter().map(|place| (*class, wanted, place, swept(place))));
         }
         let slowest = boxes.iter().map(|(class, ..)| class.speeds[0]).fold(f64::INFINITY, f64::min);
         let lowest = boxes.iter().map(|(.., swept)| swept.low.y).fold(f64::INFINITY, f64::min);
@@ -133,23 +163,26 @@ impl RainField {
         let Some(paths) = SkyPaths::new(obstacles, &self.wind, begin, slowest, deepest) else {
             return Ok(Vec::new());
         };
-        let in_box = |(class, bounds, swept): (&Class, Bounds, Bounds)| {
+        let in_box = |(class, wanted, bounds, swept): (&Class, &W, Bounds, Bounds)| {
             self.gathered(class, &swept, end, ways.last(), |drop, speed| {
-                if !wanted(drop.id) {
+                let start = ways.at_begin(drop, speed);
+                let ends = [start, drop.position];
+                if !wanted(&Candidate { id: drop.id, diameter: drop.diameter, speed, ends }) {
                     return None;
                 }
                 let (hit, from, velocity, time_s) = ways.first_met(obstacles, drop, speed)?;
                 let position = obstacles.origin + (from + velocity * hit.distance).as_dvec3();
-                let within = position.cmpge(bounds.low).all() && position.cmplt(bounds.high).all();
-                let start = ways.at_begin(drop, speed) - obstacles.origin;
-                if !(within && paths.shelter_is_open(start.as_vec3(), start, speed, velocity)) {
+                if !(position.cmpge(bounds.low).all() && position.cmplt(bounds.high).all()) {
                     return None;
                 }
                 let normal = facets.facing(&hit, velocity);
-                Some(Impact { position, normal, velocity, diameter: drop.diameter, id: drop.id, time_s })
+                let (diameter, id) = (drop.diameter, drop.id);
+                let made = make(&Impact { position, normal, velocity, diameter, id, time_s })?;
+                let start = start - obstacles.origin;
+                paths.shelter_is_open(start.as_vec3(), start, speed, velocity).then_some(made)
             })
         };
-        let impacts: Vec<Vec<Impact>> = boxes.into_par_iter().map(in_box).collect();
+        let impacts: Vec<Vec<T>> = boxes.into_par_iter().map(in_box).collect();
         Ok(impacts.into_iter().flatten().collect())
     }
 }

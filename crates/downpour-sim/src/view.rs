@@ -77,6 +77,11 @@ pub(crate) struct Bounds {
 }
 
 impl Bounds {
+    /// Middle of the box, and the radius of the ball around it, m.
+    pub(crate) fn ball(&self) -> (DVec3, f64) {
+        (self.low.midpoint(self.high), 0.5 * (self.high - self.low).length())
+    }
+
     /// Box that holds two boxes.
     pub(crate) fn union(&self, other: &Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }

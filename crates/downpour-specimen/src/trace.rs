@@ -132,35 +132,40 @@ pub fn specimen_hits<R: Real>(drop: &TracedDrop, ray: &SpecimenRay<R>) -> R::Mas
     one.both(decided, (-ray.reach).less(R::select(inside, first, along)))
 }
 
-/// First interface: light reflected outside leaves, the remainder enters.
+/// Light that meets a drop at a point with a normal: light reflected outside leaves, the remainder enters.
 #[inline(always)]
 #[must_use]
-pub fn specimen_enter<R: Real>(drop: &TracedDrop, ray: &SpecimenRay<R>) -> SpecimenLight<R> {
-    let one = ray.reach.constant(1.0);
-    let index = one.constant(drop.index);
-    let point = mask_trace_meet(drop, ray.foot, ray.direction, -one);
-    let normal = mask_trace_normal(drop, point);
-    let reflectance = optics_fresnel(-dot(ray.direction, normal), index);
-    let (inside, _) = optics_refract(ray.direction, normal, one / index);
+pub fn specimen_split_outside<R: Real>(
+    point: [R; 3],
+    normal: [R; 3],
+    direction: [R; 3],
+    index: R,
+) -> SpecimenLight<R> {
+    let one = index.constant(1.0);
+    let reflectance = optics_fresnel(-dot(direction, normal), index);
+    let (inside, _) = optics_refract(direction, normal, one / index);
     SpecimenLight {
         point,
         fraction: reflectance,
-        exit: optics_reflect(ray.direction, normal),
+        exit: optics_reflect(direction, normal),
         rest: one - reflectance,
         inside: normalize(inside),
     }
 }
 
-/// Next interface from inside. If less than `least` would stay inside, all leaves: in the direction of the last
-/// exit, if nothing is transmitted here.
+/// Light that meets the surface from inside at a point with a normal. If less than `least` would stay inside, all leaves: in the
+/// direction of the last exit, if nothing is transmitted here.
 #[inline(always)]
 #[must_use]
-pub fn specimen_bounce<R: Real>(drop: &TracedDrop, light: &SpecimenLight<R>, least: R) -> SpecimenLight<R> {
+pub fn specimen_split_inside<R: Real>(
+    light: &SpecimenLight<R>,
+    point: [R; 3],
+    normal: [R; 3],
+    index: R,
+    least: R,
+) -> SpecimenLight<R> {
     let zero = least.constant(0.0);
     let one = least.constant(1.0);
-    let index = one.constant(drop.index);
-    let point = mask_trace_meet(drop, light.point, light.inside, one);
-    let normal = mask_trace_normal(drop, point);
     let reflectance = optics_fresnel(dot(light.inside, normal), one / index);
     let (through, _) = optics_refract(light.inside, scale(normal, -one), index);
     let passes = reflectance.less(one);
@@ -173,6 +178,23 @@ pub fn specimen_bounce<R: Real>(drop: &TracedDrop, light: &SpecimenLight<R>, lea
         rest,
         inside: optics_reflect(light.inside, normal),
     }
+}
+
+/// First interface.
+#[inline(always)]
+#[must_use]
+pub fn specimen_enter<R: Real>(drop: &TracedDrop, ray: &SpecimenRay<R>) -> SpecimenLight<R> {
+    let one = ray.reach.constant(1.0);
+    let point = mask_trace_meet(drop, ray.foot, ray.direction, -one);
+    specimen_split_outside(point, mask_trace_normal(drop, point), ray.direction, one.constant(drop.index))
+}
+
+/// Next interface from inside.
+#[inline(always)]
+#[must_use]
+pub fn specimen_bounce<R: Real>(drop: &TracedDrop, light: &SpecimenLight<R>, least: R) -> SpecimenLight<R> {
+    let point = mask_trace_meet(drop, light.point, light.inside, least.constant(1.0));
+    specimen_split_inside(light, point, mask_trace_normal(drop, point), least.constant(drop.index), least)
 }
 
 /// Everything that leaves the drop, or passes it by, on the ray through the point (x, y) of the picture, in samples from

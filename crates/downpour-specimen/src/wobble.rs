@@ -10,18 +10,17 @@
 //!
 //! Generic over [`Real`]; with `f32` the twin of `shaders/wgsl/render/specimen_wobble.wgsl`.
 
-use downpour_drop::optics::{optics_fresnel, optics_reflect, optics_refract};
 use downpour_drop::shape::COEFFICIENTS;
 use downpour_mask::trace::{Surface, mask_trace_step};
 use downpour_mask::wobble::mask_wobble_surface;
 use downpour_math::real::Real;
-use downpour_math::vector::{add_scaled, dot, normalize, scale, select};
+use downpour_math::vector::{add_scaled, dot, normalize};
 use downpour_shaders::render::specimen::{
     SPECIMEN_WOBBLE_FLAT, SPECIMEN_WOBBLE_PART, SPECIMEN_WOBBLE_PARTS, SPECIMEN_WOBBLE_SLACK,
     SPECIMEN_WOBBLE_STEPS, SPECIMEN_WOBBLE_TURNS,
 };
 
-use super::trace::{SpecimenLight, SpecimenRay};
+use super::trace::{SpecimenLight, SpecimenRay, specimen_split_inside, specimen_split_outside};
 
 /// A drop at one instant.
 #[derive(Clone, Copy, Debug)]
@@ -164,7 +163,7 @@ pub fn specimen_wobble_meet<R: Real<Mask = bool>>(
     specimen_wobble_cross(drop, ray.foot, ray.direction, start, far, -far.constant(1.0))
 }
 
-/// First interface, at the parameter `s` of the ray: light reflected outside leaves, the remainder enters.
+/// First interface, at the parameter `s` of the ray.
 #[inline]
 #[must_use]
 pub fn specimen_wobble_enter<R: Real>(
@@ -172,23 +171,12 @@ pub fn specimen_wobble_enter<R: Real>(
     ray: &SpecimenRay<R>,
     s: R,
 ) -> SpecimenLight<R> {
-    let one = s.constant(1.0);
-    let index = s.constant(drop.index);
     let point = add_scaled(ray.foot, ray.direction, s);
     let normal = normalize(specimen_wobble_surface(drop, point).half_gradient);
-    let reflectance = optics_fresnel(-dot(ray.direction, normal), index);
-    let (inside, _) = optics_refract(ray.direction, normal, one / index);
-    SpecimenLight {
-        point,
-        fraction: reflectance,
-        exit: optics_reflect(ray.direction, normal),
-        rest: one - reflectance,
-        inside: normalize(inside),
-    }
+    specimen_split_outside(point, normal, ray.direction, s.constant(drop.index))
 }
 
-/// Next interface from inside. If less than `least` would stay inside, all leaves: in the direction of the last
-/// exit, if nothing is transmitted here.
+/// Next interface from inside.
 #[inline]
 #[must_use]
 pub fn specimen_wobble_bounce<R: Real<Mask = bool>>(
@@ -197,22 +185,9 @@ pub fn specimen_wobble_bounce<R: Real<Mask = bool>>(
     least: R,
 ) -> SpecimenLight<R> {
     let zero = least.constant(0.0);
-    let one = least.constant(1.0);
-    let index = one.constant(drop.index);
     let [_, end] = specimen_wobble_span(drop, light.point, light.inside);
-    let s = specimen_wobble_cross(drop, light.point, light.inside, zero, end, one).unwrap_or(end);
-    let point = add_scaled(light.point, light.inside, s);
+    let cross = specimen_wobble_cross(drop, light.point, light.inside, zero, end, least.constant(1.0));
+    let point = add_scaled(light.point, light.inside, cross.unwrap_or(end));
     let normal = normalize(specimen_wobble_surface(drop, point).half_gradient);
-    let reflectance = optics_fresnel(dot(light.inside, normal), one / index);
-    let (through, _) = optics_refract(light.inside, scale(normal, -one), index);
-    let passes = reflectance.less(one);
-    let kept = light.rest * reflectance;
-    let rest = R::select(kept.less(least), zero, kept);
-    SpecimenLight {
-        point,
-        fraction: light.rest - rest,
-        exit: select(passes, through, light.exit),
-        rest,
-        inside: optics_reflect(light.inside, normal),
-    }
+    specimen_split_inside(light, point, normal, least.constant(drop.index), least)
 }

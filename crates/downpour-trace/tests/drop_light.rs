@@ -8,7 +8,7 @@ use downpour_render::RenderError;
 use downpour_render::camera::{Camera, Viewpoint};
 use downpour_render::light::LightSource;
 use downpour_render::rain::glint::{
-    drop_glint_pack, drop_glint_right, drop_glint_side, drop_glint_spot, drop_glint_unpack,
+    drop_glint_image, drop_glint_pack, drop_glint_pixel, drop_glint_right, drop_glint_side, drop_glint_unpack,
 };
 use downpour_render::rain::light::{DropLightForm, DropLightOptions, DropLightTable, DropLights};
 use downpour_render::rain::{EnvironmentFrame, RainOptions};
@@ -166,7 +166,8 @@ fn glints_stand_where_they_belong_and_sum_to_the_mean() -> Outcome {
         assert!((kept / mean - 1.0).abs().max_element() < 1e-5, "{kept} for {mean}");
         for glint in &all {
             let row = rows[1..].iter().find(|row| row[0] == glint.radiance.x).ok_or("a glint is not kept")?;
-            assert!((drop_glint_unpack(row[3]) - glint.position).abs().max_element() < 3e-4);
+            assert!((drop_glint_unpack(row[3]) - glint.position).abs().max_element() < 1.0e-3);
+            assert!((drop_glint_image(row[3]) / glint.image - 1.0).abs() < 0.05, "{}", glint.image);
         }
         let normal = (light - towards).normalize();
         let mirror = all.iter().find(|glint| glint.order == 0).ok_or("no mirror")?;
@@ -183,21 +184,55 @@ fn glints_stand_where_they_belong_and_sum_to_the_mean() -> Outcome {
 }
 
 #[test]
-fn places_are_packed_and_spots_have_unit_mean() {
+fn glints_are_packed_and_pixels_share_them() {
     for position in [Vec2::ZERO, Vec2::new(1.0, -1.0), Vec2::new(-0.123, 0.987), Vec2::new(-1.0, 1.0)] {
-        let word = drop_glint_pack(position);
-        assert!(word.fract() == 0.0 && (0.0..16_777_216.0).contains(&word), "{word}");
-        assert!((drop_glint_unpack(word) - position).abs().max_element() <= 1.001 / 4094.0, "{position}");
+        for image in [0.0, 0.002, 0.03, 0.5, 1.0] {
+            let word = drop_glint_pack(position, image);
+            assert!(word.is_normal() && word > 0.0, "{word}");
+            assert!((drop_glint_unpack(word) - position).abs().max_element() <= 1.001 / 1022.0, "{position}");
+            let found = drop_glint_image(word);
+            assert!((found - image).abs() <= 1.0e-6 + image.sqrt() / 500.0, "{found} for {image}");
+        }
     }
-    let (steps, width) = (200i16, 0.1);
-    let step = 2.0 / f32::from(steps);
-    let mut sum = 0.0;
-    for k in 0..i32::from(steps) * i32::from(steps) {
-        let at = |k: i32| (k as f32 + 0.5) * step - 1.0;
-        let offset = Vec2::new(at(k % i32::from(steps)), at(k / i32::from(steps)));
-        sum += drop_glint_spot(offset, width) * step * step / PI;
+    // A bump anywhere, of any reach, is all there, and in the middle.
+    for (middle, reach) in [([0.3, 0.8], 1.0), ([0.5, 0.5], 2.7), ([0.01, 0.99], 6.4)] {
+        let (mut sum, mut mean) = (0.0, Vec2::ZERO);
+        for k in 0..20 * 20i32 {
+            let corner = Vec2::new((k % 20 - 10) as f32, (k / 20 - 10) as f32);
+            let part = drop_glint_pixel(Vec2::from(middle) - corner, reach);
+            (sum, mean) = (sum + part, mean + part * (corner + 0.5));
+        }
+        assert!((sum - 1.0).abs() < 1.0e-5 && mean.distance(middle.into()) < 0.1, "{sum}, {mean}");
     }
-    assert!((sum - 1.0).abs() < 1e-3, "{sum}");
+}
+
+/// A ball shows a lamp outside half as large as a mirror would that is flat: the normal turns by half of the angle. In the middle, what
+/// comes through is twice as large as the lamp: n / (2 (n - 1)), the focal length of a ball in radii.
+#[test]
+fn glints_are_as_large_as_the_images_of_their_lamps() -> Outcome {
+    let table = DropLightTable::new([1.333; 3], 0.009)?;
+    let eye = Vec3::new(0.0, 0.0, 4.0);
+    for (degrees, order, factor) in [(100.0, 0, 0.5), (60.0, 0, 0.5), (150.0, 0, 0.5), (3.0, 1, 2.0015)] {
+        // A sphere of 0.1 m at 2 m, and one at infinity.
+        let direction = turned(-Vec3::Z, degrees);
+        let sphere = |radius| LightSource::Point {
+            position: direction * 2.0,
+            radius,
+            intensity: Vec3::ONE,
+            range: 0.0,
+        };
+        for (radius, spread) in [(0.1, 0.05), (0.0, 0.00465)] {
+            let scene = scene(&[sphere(radius)], None);
+            let frame = frame(&scene, eye)?;
+            let view = SceneView { data: &scene, frame: &frame };
+            let lights = DropLights::new(&view, frame.camera.eye, &table, DropLightOptions::default())?;
+            let all = lights.glints([0.0, 0.0, 0.0, RADIUS]);
+            let glint = all.iter().find(|glint| glint.order == order).ok_or("no such glint")?;
+            let expected = factor * spread;
+            assert!((glint.image / expected - 1.0).abs() < 0.05, "{degrees}: {}, {expected}", glint.image);
+        }
+    }
+    Ok(())
 }
 
 #[test]

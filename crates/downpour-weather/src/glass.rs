@@ -1,15 +1,18 @@
 //! `[glass]` and `[[glass.wiper]]`: a pane before the camera, and the rain on it.
 
 use super::fault::Positions;
+use super::file::path;
+use super::pane_map::PaneMap;
 use super::quantity::{
-    AboveM, AdvancingDeg, BeforeS, BladeM, CellMm, DryingMmH, Exactly, FilmUm, Fraction, HighlightMm, In,
-    PaneApertureMm, PaneM, PaneMS, PaneTiltDeg, PeriodS, PivotM, ReachM, RecedingDeg, TurnDeg,
+    AboveM, AdvancingDeg, BeadMm, BeforeS, BladeFilmUm, BladeM, CellMm, DryingMmH, Exactly, FilmUm, Fraction,
+    GlassWetS, HighlightMm, In, PaneApertureMm, PaneM, PaneMS, PaneTiltDeg, PeriodS, PivotM, Pull, ReachM,
+    RecedingDeg, TrailMm, TurnDeg,
 };
 use super::wind::keys::NumberKeys;
 use super::{Rain, Weather};
 use downpour_lattice::glass::{
-    GlassAir, GlassContact, GlassError, GlassOptions, GlassRain, GlassWiper, GlassWiperKey, GlassWiperMotion,
-    GlassWornBand,
+    GlassAir, GlassContact, GlassError, GlassOptions, GlassRain, GlassTrail, GlassWetting, GlassWiper,
+    GlassWiperKey, GlassWiperMotion, GlassWornBand,
 };
 use downpour_math::OutOfRange;
 use downpour_math::ops::f64 as ops;
@@ -115,6 +118,18 @@ pub struct Pane {
     pub film: f64,
     /// Drying, mm/h.
     pub drying_mm_h: f64,
+    /// Affinity of the glass for water: black repels, white attracts. `None`: noise.
+    pub affinity: Option<PaneMap>,
+    /// Attraction of drops by affinity, 0 to 4.
+    pub affinity_pull: f64,
+    /// Friction of the glass, from none to nearly twice the usual. `None`: noise.
+    pub friction_map: Option<PaneMap>,
+    /// Parts of the pane that hold no water. `None`: none.
+    pub obstacles: Option<PaneMap>,
+    /// Time that glass stays wet, s; friction and attraction there.
+    pub wetting: GlassWetting,
+    /// Beads that running drops leave behind.
+    pub trail: GlassTrail,
     /// Seed of all random values on the pane.
     pub seed: u64,
     /// Wipers. The times of their keys are those of the weather; a sweep starts with the rain on the pane.
@@ -149,14 +164,22 @@ impl Pane {
         let (rain, air) = self.weather(rain, fastest);
         let [columns, rows] = self.cells(size);
         let above = self.rows_above(size);
+        let cells = [columns, rows.saturating_add(above)];
+        let usual = GlassOptions::default();
         GlassOptions {
-            size: [columns, rows.saturating_add(above)],
+            size: cells,
             cell_m: self.cell,
             tilt_rad: self.tilt,
             contact: self.contact,
             rain,
             air,
             evaporation_mm_h: self.drying_mm_h,
+            affinity: self.affinity_texture(cells, above, usual.affinity),
+            affinity_pull: self.affinity_pull,
+            friction: self.friction_texture(cells, above, usual.friction),
+            obstacles: self.obstacle_cells(cells, above),
+            wetting: self.wetting,
+            trail: self.trail,
             temperature_c: rain.air.temperature_c(),
             wipers: self
                 .wipers
@@ -165,7 +188,6 @@ impl Pane {
                 .collect(),
             speed_limit_m_s: SPEED_LIMIT_M_S,
             seed: self.seed,
-            ..GlassOptions::default()
         }
     }
 
@@ -246,6 +268,15 @@ pub(super) struct GlassTable {
     receding_deg: Option<In<RecedingDeg>>,
     film_um: Option<In<FilmUm>>,
     drying_mm_h: Option<In<DryingMmH>>,
+    affinity: Option<String>,
+    affinity_pull: Option<In<Pull>>,
+    friction_map: Option<String>,
+    obstacles: Option<String>,
+    wet_s: Option<In<GlassWetS>>,
+    wet_ease: Option<In<Fraction>>,
+    wet_pull: Option<In<Pull>>,
+    trail_mm: Option<In<TrailMm>>,
+    bead_mm: Option<In<BeadMm>>,
     seed: Option<u64>,
     #[serde(default)]
     wiper: Vec<WiperTable>,
@@ -263,6 +294,7 @@ struct WiperTable {
     period_s: Option<In<PeriodS>>,
     angle_deg: Option<NumberKeys<TurnDeg>>,
     is_drawn: Option<bool>,
+    film_um: Option<In<BladeFilmUm>>,
     #[serde(default)]
     worn: Vec<WornTable>,
 }
@@ -286,6 +318,10 @@ impl GlassTable {
     ) -> Result<Pane, SceneError> {
         let number = |given: Option<f64>, default: f64| given.unwrap_or(default);
         let contact = GlassContact::default();
+        let map = |file: &Option<String>, key: &str| {
+            file.as_ref().map(|file| path(file, key, positions).map(PaneMap::new)).transpose()
+        };
+        let usual = GlassOptions::default();
         let pane = Pane {
             distance: number(self.distance_m.map(|m| m.0), 0.5),
             tilt: number(self.tilt_deg.map(|deg| deg.0), 90.0).to_radians(),
@@ -311,6 +347,20 @@ impl GlassTable {
             },
             film: number(self.film_um.map(|um| um.0), 8.0) * 1.0e-6,
             drying_mm_h: number(self.drying_mm_h.map(|rate| rate.0), 0.0),
+            affinity: map(&self.affinity, "glass.affinity")?,
+            affinity_pull: number(self.affinity_pull.map(|pull| pull.0), usual.affinity_pull),
+            friction_map: map(&self.friction_map, "glass.friction_map")?,
+            obstacles: map(&self.obstacles, "glass.obstacles")?,
+            wetting: GlassWetting {
+                life_s: number(self.wet_s.map(|s| s.0), usual.wetting.life_s),
+                ease: number(self.wet_ease.map(|fraction| fraction.0), usual.wetting.ease),
+                pull: number(self.wet_pull.map(|pull| pull.0), usual.wetting.pull),
+                ..usual.wetting
+            },
+            trail: GlassTrail {
+                spacing_m: self.trail_mm.map_or(usual.trail.spacing_m, |mm| mm.0 * 1.0e-3),
+                bead_m: self.bead_mm.map_or(usual.trail.bead_m, |mm| mm.0 * 1.0e-3),
+            },
             seed: self.seed.unwrap_or(rain.seed),
             wipers: Vec::new(),
             wipers_drawn: Vec::new(),
@@ -396,6 +446,7 @@ impl WiperTable {
             inner_m: self.inner_m.map_or(0.15 * length, |m| m.0),
             outer_m: length,
             motion,
+            film_m: self.film_um.map_or(0.2, |um| um.0) * 1.0e-6,
             worn: self.worn.iter().map(worn).collect(),
         })
     }

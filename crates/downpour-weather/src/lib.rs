@@ -34,6 +34,7 @@ mod lamps;
 mod lightning;
 mod load;
 mod models;
+mod pane_map;
 mod presets;
 mod puddle;
 mod quantity;
@@ -69,6 +70,7 @@ pub use lightning::{
 };
 pub use load::{Loaded, Reloaded, Roots, lamps_at, load};
 pub use models::{Model, Repeat};
+pub use pane_map::PaneMap;
 pub use presets::PRESETS;
 pub use puddle::{MAX_ALL_PUDDLE_CELLS, MAX_PUDDLE_CELLS, Puddle, PuddleFill, PuddleShape};
 pub use rain::{

@@ -1,5 +1,6 @@
 //! All files of a weather, as one scene, one sky and one sun.
 
+use super::pane_map::read_pane_maps;
 use super::puddle::{MAX_ALL_PUDDLE_CELLS, MAX_PUDDLE_CELLS, PuddleShape};
 use super::{Lamp, Model, Puddle, SkySource, SunSource, Weather};
 use downpour_math::ops::f64 as ops;
@@ -78,6 +79,7 @@ impl Loaded {
         }
         let mut remaining = *budget;
         let mut loaded = Self { masks: masks(weather, files, &mut remaining)?, ..self.clone() };
+        read_pane_maps(weather, files, &mut remaining)?;
         if reloaded.sky {
             let mut warnings = Warnings::default();
             loaded.unscaled = None;
@@ -195,6 +197,7 @@ pub fn load(weather: &Weather, files: &dyn Files, budget: &mut Budget) -> Result
         add_lamp(&mut scene, lamp);
     }
     let masks = masks(weather, files, &mut remaining)?;
+    read_pane_maps(weather, files, &mut remaining)?;
     let drop_model = drop_model(weather, files, &mut remaining)?;
     *budget = remaining;
     let of_drops = drop_model.iter().flat_map(|model| model.warnings.clone()).collect();

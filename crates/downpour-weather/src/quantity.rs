@@ -104,6 +104,11 @@ ranges! {
     RecedingDeg: 0.0, 120.0, "0 to 120 degrees";
     HighlightMm: 0.0, 10.0, "0 to 10 mm";
     FilmUm: 0.0, 200.0, "0 to 200 um";
+    BladeFilmUm: 0.0, 20.0, "0 to 20 um";
+    Pull: 0.0, 4.0, "0 to 4";
+    GlassWetS: 0.1, 3600.0, "0.1 to 3600 s";
+    TrailMm: 0.1, 1000.0, "0.1 to 1000 mm";
+    BeadMm: 0.0, 2.0, "0 to 2 mm";
     DryingMmH: 0.0, 100.0, "0 to 100 mm/h";
     PivotM: -20.0, 20.0, "-20 to 20 m";
     BladeM: 0.0, 20.0, "0 to 20 m";

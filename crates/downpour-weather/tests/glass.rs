@@ -2,7 +2,7 @@
 
 #[path = "../../downpour-scene/tests/exit_code/mod.rs"]
 mod exit_code;
-use downpour_lattice::glass::{GlassWiperMotion, GlassWornBand};
+use downpour_lattice::glass::{GlassTexture, GlassWiperMotion, GlassWornBand};
 use downpour_weather::{PaneFocus, PaneFresnel, PaneShadow, Weather};
 use exit_code::ExitCode as _;
 
@@ -27,6 +27,12 @@ advancing_deg = 70
 receding_deg = 30
 film_um = 20
 drying_mm_h = 0.5
+affinity_pull = 2
+wet_s = 5
+wet_ease = 0.2
+wet_pull = 3
+trail_mm = 4
+bead_mm = 0.3
 [[glass.wiper]]
 pivot_m = [0.6, 0.62]
 length_m = 0.55
@@ -34,6 +40,7 @@ from_deg = 10
 to_deg = 170
 period_s = 1.4
 worn = [{ from_m = 0.2, to_m = 0.22, leaves = 0.7 }]
+film_um = 3
 [[glass.wiper]]
 pivot_m = [0.1, 0.62]
 length_m = 0.4
@@ -63,8 +70,12 @@ fn every_key_arrives() {
     let [one, two] = &pane.wipers[..] else { panic!("{} wipers", pane.wipers.len()) };
     assert!(matches!(one.motion, GlassWiperMotion::Sweep { period_s: 1.4, .. }));
     assert_eq!(one.worn, [GlassWornBand { from_m: 0.2, to_m: 0.22, leaves: 0.7 }]);
+    assert_eq!((one.film_m, two.film_m), (3.0 * 1.0e-6, 0.2 * 1.0e-6));
     assert_eq!((one.outer_m, two.inner_m), (0.55, 0.1));
     assert_eq!(pane.wipers_drawn, [true, false]);
+    let (wet, trail) = (pane.wetting, pane.trail);
+    assert_eq!((pane.affinity_pull, wet.life_s, wet.ease, wet.pull), (2.0, 5.0, 0.2, 3.0));
+    assert_eq!((trail.spacing_m, trail.bead_m), (4.0 * 1.0e-3, 0.3 * 1.0e-3));
     // The lattice's time starts 12 s earlier: at its 12 s the keyed blade is vertical.
     let weather = Weather::parse("w.toml", ALL).unwrap();
     let options = pane.options([1.2, 0.6], &weather.rain, -12.0);
@@ -172,4 +183,67 @@ fn the_rain_meets_a_pane_at_the_speed_of_eye_and_wind() {
     near(format!("{still}{}[glass]\n", wind(0.0, -1.0)), 0.0, 0.0);
     near(format!("{drive}{}[glass]\nspeed_m_s = 7\n", wind(0.0, 1.0)), 5.0, 7.0);
     near(format!("{still}[glass]\n"), 0.0, 3.0);
+}
+
+/// A pane of 16 x 8 cells, with 8 rows above it.
+const MAPPED: &str = r#"
+[glass]
+size_m = [0.032, 0.016]
+cell_mm = 2
+above_m = 0.016
+affinity = "affinity.png"
+friction_map = "friction.png"
+obstacles = "obstacles.png"
+"#;
+
+/// Writes a gray picture.
+fn write(folder: &std::path::Path, name: &str, size: [u32; 2], gray: impl Fn(u32, u32) -> u8) {
+    let picture = image::GrayImage::from_fn(size[0], size[1], |x, y| image::Luma([gray(x, y)]));
+    picture.save(folder.join(name)).expect("a picture");
+}
+
+#[test]
+fn pictures_of_the_glass_reach_the_lattice() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    write(at, "affinity.png", [16, 8], |x, _| x as u8 * 17);
+    write(at, "friction.png", [1, 2], |_, y| if y == 0 { 0 } else { 255 });
+    write(at, "obstacles.png", [16, 8], |x, y| if x == 3 && y == 4 { 255 } else { 0 });
+    let file = at.join("w.toml");
+    std::fs::write(&file, MAPPED).expect("a file");
+    let mut budget = downpour_scene::Budget::default();
+    let weather = Weather::read(&file, &mut budget).expect("a weather");
+    let roots = downpour_weather::Roots::open(&file, &[]).expect("a folder");
+    downpour_weather::load(&weather, &roots, &mut budget).expect("its files");
+    let options = weather.glass.as_ref().unwrap().options([0.032, 0.016], &weather.rain, 0.0);
+    assert_eq!(options.size, [16, 16]);
+    let GlassTexture::Given(affinity) = &options.affinity else { panic!("{:?}", options.affinity) };
+    // A column of the picture is a column of cells, from black to white, above the picture too.
+    assert_eq!((affinity[0], affinity[15], affinity[16 * 12 + 15]), (0.0, 1.0, 1.0));
+    assert!((affinity[16 * 12 + 5] - 5.0 / 15.0).abs() < 1.0e-6);
+    let GlassTexture::Given(friction) = &options.friction else { panic!("{:?}", options.friction) };
+    assert_eq!((friction[0], friction[16 * 8], friction[16 * 15]), (0.0, 0.0, 1.99));
+    let obstacles = options.obstacles.as_ref().unwrap();
+    assert_eq!(obstacles.iter().filter(|is| **is).count(), 1);
+    assert!(obstacles[16 * 12 + 3], "row 4 of what is seen");
+    assert!(options.check().is_ok());
+
+    // Not there, no picture, too large, outside of the folder.
+    let fails = |name: &str| {
+        let weather = Weather::read(&file, &mut downpour_scene::Budget::default()).expect("a weather");
+        let error = downpour_weather::load(&weather, &roots, &mut downpour_scene::Budget::default());
+        let error = error.expect_err(name);
+        assert!(error.to_string().contains(name), "{error}");
+        error
+    };
+    std::fs::write(at.join("friction.png"), b"no picture").expect("a file");
+    assert_eq!(fails("friction.png").exit_code(), 2);
+    write(at, "friction.png", [4097, 1], |_, _| 0);
+    let error = fails("friction.png");
+    assert!(error.to_string().contains("4097 x 1"), "{error}");
+    assert_eq!(error.exit_code(), 3);
+    std::fs::remove_file(at.join("friction.png")).expect("the file");
+    assert_eq!(fails("friction.png").exit_code(), 5);
+    let error = Weather::parse("w.toml", "[glass]\nobstacles = \"../a.png\"\n").expect_err("outside");
+    assert!(error.to_string().contains("glass.obstacles"), "{error}");
 }

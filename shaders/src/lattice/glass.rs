@@ -9,6 +9,7 @@ pub const MODULES: &[&Module] = &[
     &SIZE,
     &MOTION,
     &BLADE,
+    &RIDGE,
     &FRAME,
     &TABLE,
     &CLAIM,
@@ -56,6 +57,20 @@ shared_constants! {
         GLASS_INDEX: u32 = 16777215;
         /// Flag of a target: a larger drop takes this one.
         GLASS_TAKEN: u32 = 1073741824;
+        /// Flag of a target: the water is part of a ridge and stays, but for what flows along it.
+        GLASS_STAYS: u32 = 536870912;
+        /// Flag of the progress of a cell: its water is part of a ridge that a blade has pushed together.
+        GLASS_RIDGE: u32 = 1073741824;
+        /// Class in the keys of ridges, above all classes of mass.
+        GLASS_RIDGE_CLASS: u32 = 192;
+        /// Class in the keys of water that a blade pushes, above that of ridges.
+        GLASS_RIDGE_PUSHED: u32 = 255;
+        /// Half-width of the thinnest ridge that does not break up, in cells / 256.
+        GLASS_RIDGE_MIN: u32 = 96;
+        /// Fraction of its water that a ridge exchanges with the cell on each side in a tick, in units of 1/256.
+        GLASS_RIDGE_LEVEL: i32 = 40;
+        /// Largest fraction by which gravity changes that.
+        GLASS_RIDGE_FALL: u32 = 120;
         /// Target beyond the edge of the pane.
         GLASS_OUT: u32 = 4294967295;
         /// Speed at which a running drop is stretched by 1/256 of its radius.
@@ -98,6 +113,13 @@ pub static BLADE: Module = Module {
     uses: &[&GLASS_CONSTANTS],
 };
 
+/// Ridges of water. Twin: `downpour_lattice::glass::ridge`.
+pub static RIDGE: Module = Module {
+    path: "lattice/glass_ridge.wgsl",
+    wgsl: include_str!("../../wgsl/lattice/glass_ridge.wgsl"),
+    uses: &[&GLASS_CONSTANTS],
+};
+
 /// Parameters of a call. Twin: `downpour_lattice::glass::frame`.
 pub static FRAME: Module = Module {
     path: "lattice/glass_frame.wgsl",
@@ -116,28 +138,28 @@ pub static TABLE: Module = Module {
 pub static CLAIM: Module = Module {
     path: "lattice/glass_claim.wgsl",
     wgsl: include_str!("../../wgsl/lattice/glass_claim.wgsl"),
-    uses: &[&FRAME, &TABLE],
+    uses: &[&FRAME, &TABLE, &RIDGE, &MOTION],
 };
 
 /// Decision of drops. Twin: `downpour_lattice::glass::decide`.
 pub static DECIDE: Module = Module {
     path: "lattice/glass_decide.wgsl",
     wgsl: include_str!("../../wgsl/lattice/glass_decide.wgsl"),
-    uses: &[&FRAME, &TABLE, &MOTION, &RNG],
+    uses: &[&FRAME, &TABLE, &MOTION, &RIDGE, &RNG],
 };
 
 /// Transfer of water. Twin: `downpour_lattice::glass::transfer`.
 pub static TRANSFER: Module = Module {
     path: "lattice/glass_transfer.wgsl",
     wgsl: include_str!("../../wgsl/lattice/glass_transfer.wgsl"),
-    uses: &[&FRAME, &TABLE, &BLADE, &RNG],
+    uses: &[&FRAME, &TABLE, &BLADE, &MOTION, &RIDGE, &RNG],
 };
 
 /// Settling of water. Twin: `downpour_lattice::glass::settle`.
 pub static SETTLE: Module = Module {
     path: "lattice/glass_settle.wgsl",
     wgsl: include_str!("../../wgsl/lattice/glass_settle.wgsl"),
-    uses: &[&FRAME, &MOTION],
+    uses: &[&FRAME, &MOTION, &RIDGE],
 };
 
 /// Number of the tick.
@@ -151,7 +173,7 @@ pub static NEXT: Module = Module {
 pub static HEIGHT: Module = Module {
     path: "lattice/glass_height.wgsl",
     wgsl: include_str!("../../wgsl/lattice/glass_height.wgsl"),
-    uses: &[&FRAME, &TABLE, &MOTION],
+    uses: &[&FRAME, &TABLE, &MOTION, &RIDGE],
 };
 
 /// Smoothing of heights. Twin: `downpour_lattice::glass::smooth`.

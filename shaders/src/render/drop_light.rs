@@ -50,9 +50,17 @@ shared_constants! {
         /// Positions along a ring.
         DROP_LIGHT_POINTS: u32 = 8;
         /// Steps of a packed coordinate from the middle of the disk to its rim.
-        DROP_GLINT_STEPS: f32 = 2047.0;
+        DROP_GLINT_STEPS: f32 = 511.0;
         /// Steps of a packed coordinate, both signs.
-        DROP_GLINT_RANGE: f32 = 4096.0;
+        DROP_GLINT_RANGE: f32 = 1024.0;
+        /// Bits of these steps.
+        DROP_GLINT_MASK: u32 = 1023;
+        /// Steps of the square root of a packed width.
+        DROP_GLINT_WIDTHS: f32 = 511.0;
+        /// Bits of these steps.
+        DROP_GLINT_WIDTH_MASK: u32 = 511;
+        /// Bits of every packed glint: of an ordinary positive number, which no device rounds to another.
+        DROP_GLINT_NUMBER: u32 = 0x20000000;
         /// Below this, a vector has no direction.
         DROP_GLINT_TINY: f32 = 1.0e-30;
         /// Rows of a drop's light that hold a streak of an atlas.

@@ -33,6 +33,7 @@ pub const MODULES: &[&Module] = &[
     &PROFILES,
     &TILES,
     &DROPS_ATLAS,
+    &DROPS_GLINT,
     &DROPS,
 ];
 
@@ -216,6 +217,8 @@ shared_constants! {
         STREAK_SPOT_REACH: f32 = 0.75;
         /// Radius of a round spot over whose points a patch's light is shared evenly enough, over their distance.
         STREAK_SPOT_WIDTH: f32 = 1.8;
+        /// No edge of a disk is narrower, for the division.
+        STREAK_SPOT_EDGE: f32 = 1.0e-6;
         /// A patch counts as no narrower than this fraction of its length, for its points.
         STREAK_SPOT_NARROW: f32 = 0.2;
         /// The same for the width over which the environment is averaged.
@@ -234,10 +237,10 @@ shared_constants! {
         STREAK_LATTICE: u32 = 3;
         /// Shift of these samples from line to line: the golden ratio's part of 2^16.
         STREAK_GOLDEN: u32 = 40503;
-        /// The least width of a glint, in radii.
-        DROPS_GLINT: f32 = 0.03;
-        /// Half the square root of 2 pi: a normal distribution along a line, of unit mean over a disk.
-        DROPS_LINE: f32 = 1.2533141;
+        /// Reach of a bump that is as wide as a disk, over the disk's radius: half the square root of 7, by their second moments.
+        DROPS_GLINT_BUMP: f32 = 1.3228756;
+        /// Width of a box that is as wide as a disk, over the disk's radius: the square root of 3, by their second moments.
+        DROPS_GLINT_BOX: f32 = 1.7320508;
         /// Position of Gauss's two points: 1 / sqrt(3).
         STREAK_GAUSS: f32 = 0.57735026;
         /// Words before the texels of an atlas.
@@ -388,6 +391,13 @@ pub static DROPS_ATLAS: Module = Module {
     uses: &[&RAIN_CONSTANTS, &DROPS_FRAME, &DROPS_MASK, &ATLAS],
 };
 
+/// Glints of lamps on a drop, pixel by pixel. Twin: `downpour_render::rain::drops_glint`.
+pub static DROPS_GLINT: Module = Module {
+    path: "render/drops_glint.wgsl",
+    wgsl: include_str!("../../wgsl/render/drops_glint.wgsl"),
+    uses: &[&RAIN_CONSTANTS, &CAMERA, &DROPS_FRAME, &STREAK, &DROP_LIGHT_CONSTANTS, &DROP_GLINT],
+};
+
 /// Drops through their masks. Twin: `downpour_render::rain::drops`.
 pub static DROPS: Module = Module {
     path: "render/drops.wgsl",
@@ -404,6 +414,7 @@ pub static DROPS: Module = Module {
         &DROPS_ATLAS,
         &DROP_LIGHT_CONSTANTS,
         &DROP_GLINT,
+        &DROPS_GLINT,
         &MEDIUM,
     ],
 };

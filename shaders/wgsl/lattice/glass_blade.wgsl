@@ -13,8 +13,9 @@ struct GlassBlade {
     turn: i32,
     // Fraction of the water that stays behind, in units of 1/256.
     leaves: u32,
-    unused_1: u32,
-    unused_2: u32,
+    // Mass that stays behind as a film, in units of mass / 65536 for each cell.
+    film: u32,
+    unused: u32,
 }
 
 // Cross product of two vectors: positive if `b` is on the +y side of `a` along +x. |a| is 16384, |b| below 2^15.
@@ -32,11 +33,26 @@ fn glass_blade_sweeps(blade: GlassBlade, cell: vec2i) -> bool {
     return blade.turn != 0 && before >= 0 && after < 0 && along >= blade.reach.x && along < blade.reach.y;
 }
 
-// Cell ahead of the blade to which it pushes the water of a cell.
-fn glass_blade_push(blade: GlassBlade, cell: vec2i) -> vec2i {
+// Direction in which the blade moves: a vector of length 16384, at right angles to it.
+fn glass_blade_ahead(blade: GlassBlade) -> vec2i {
+    return blade.turn * vec2i(-blade.after.y, blade.after.x);
+}
+
+// Whole cells that the blade moves in the tick at a cell's distance from the pivot, at least 1.
+fn glass_blade_moved(blade: GlassBlade, cell: vec2i) -> i32 {
     let at = cell * 2 + 1 - blade.pivot;
     let along = (blade.after.x * at.x + blade.after.y * at.y) >> 14u;
-    let ahead = blade.turn * vec2i(-blade.after.y, blade.after.x);
+    let turned = (blade.turn * glass_blade_side(blade.before, blade.after)) >> 14u;
+    return clamp((along * turned + GLASS_CELL) >> 15u, 1, 8);
+}
+
+// Cell ahead of the blade to which it pushes the water of a cell, and that many half cells outward along the blade; not
+// beyond its ends.
+fn glass_blade_push(blade: GlassBlade, cell: vec2i, outward: i32) -> vec2i {
+    let at = cell * 2 + 1 - blade.pivot;
+    let here = (blade.after.x * at.x + blade.after.y * at.y) >> 14u;
+    let along = min(max(here + outward, blade.reach.x), blade.reach.y - 1);
+    let ahead = glass_blade_ahead(blade);
     let to = (blade.after * along + ahead * GLASS_BLADE_AHEAD + GLASS_CELL / 2) >> vec2u(14u);
     return (blade.pivot + to) >> vec2u(1u);
 }

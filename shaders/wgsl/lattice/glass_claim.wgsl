@@ -1,4 +1,4 @@
-// Claim: each drop claims the cells that it wets; the largest wins.
+// Claim: each drop claims the cells that it wets; the largest wins, before it a ridge that a blade pushes.
 // Twin: downpour_lattice::glass::claim.
 
 @group(0) @binding(0) var<uniform> glass_claim_frame: GlassFrame;
@@ -10,7 +10,8 @@
 @group(0) @binding(5) var<storage, read_write> glass_claim_wet: array<atomic<u32>>;
 @group(0) @binding(6) var<storage, read> glass_claim_totals: array<u32>;
 
-// Claims the disk of a drop; a moving drop also wets it.
+// Claims the disk of a drop, or the width of a ridge; a moving drop also wets it. A ridge leaves an eighth of that film, which
+// dries in an eighth of the time.
 fn glass_claim_drop(cell: vec2i) {
     let index = glass_frame_index(glass_claim_frame, cell);
     let mass = glass_claim_mass[index];
@@ -20,20 +21,32 @@ fn glass_claim_drop(cell: vec2i) {
     let class_of = glass_size_class(mass);
     let row = glass_size_row(
         glass_claim_sizes.rows[class_of], glass_claim_sizes.rows[class_of + 1u], glass_size_fraction(mass));
-    let key = glass_size_key(mass, index);
-    let moves = glass_claim_motion[index].x != 0u;
+    var key = glass_size_key(mass, index);
+    let motion = glass_claim_motion[index];
+    let moves = motion.x != 0u;
     let clock = glass_claim_frame.first_clock + glass_claim_totals[GLASS_TOTAL_TICK] * glass_claim_frame.clock_step;
-    let reach = i32(row.radius >> 8u);
+    var center = cell;
+    var radius = row.radius;
+    var stamp = clock;
+    if glass_ridge_is(motion.y) {
+        center = glass_ridge_center(cell, glass_motion_unpack(motion.x), row.ahead);
+        radius = row.ridge;
+        stamp = clock - min(56u * glass_claim_frame.wet_life, clock - 1u);
+        if motion.y != GLASS_RIDGE {
+            key = (GLASS_RIDGE_CLASS << 24u) | index;
+        }
+    }
+    let reach = i32(radius >> 8u);
     for (var y = -reach; y <= reach; y += 1) {
         for (var x = -reach; x <= reach; x += 1) {
-            let to = cell + vec2i(x, y);
-            if u32(x * x + y * y) << 16u > row.radius * row.radius || !glass_frame_holds(glass_claim_frame, to) {
+            let to = center + vec2i(x, y);
+            if u32(x * x + y * y) << 16u > radius * radius || !glass_frame_holds(glass_claim_frame, to) {
                 continue;
             }
             let at = glass_frame_index(glass_claim_frame, to);
             atomicMax(&glass_claim_keys[at], key);
             if moves {
-                atomicMax(&glass_claim_wet[at], clock);
+                atomicMax(&glass_claim_wet[at], stamp);
             }
         }
     }

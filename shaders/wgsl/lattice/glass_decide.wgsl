@@ -99,6 +99,73 @@ fn glass_decide_hold(cell: vec2i, hold: u32, drive: vec2i, reach: i32, moves: bo
     return select(eased, (eased * glass_decide_frame.kinetic) >> 8u, moves);
 }
 
+// True if a drop can merge into the drop of a key without exceeding the maximum mass of a cell.
+fn glass_decide_fits(key: u32, mass: u32) -> bool {
+    // Of a ridge the key does not tell the mass.
+    if key >> 24u == GLASS_RIDGE_CLASS {
+        return glass_decide_mass[key & GLASS_INDEX] + mass <= GLASS_MAX_MASS;
+    }
+    return glass_size_floor((key >> 24u) + 1u) + mass <= GLASS_MAX_MASS;
+}
+
+// Octant of the next cell of a ridge on one side: the given one or a neighboring one; 8 if it ends there.
+fn glass_decide_beside(cell: vec2i, octant: u32) -> u32 {
+    for (var k = 0u; k < 3u; k += 1u) {
+        let turn = select(k, 7u, k == 2u);
+        let to = cell + glass_motion_offset(octant + turn);
+        if glass_frame_holds(glass_decide_frame, to) {
+            let index = glass_frame_index(glass_decide_frame, to);
+            if glass_decide_mass[index] != 0u && glass_ridge_is(glass_decide_motion[index].y) {
+                return (octant + turn) & 7u;
+            }
+        }
+    }
+    return 8u;
+}
+
+// Decides on a cell of a ridge.
+fn glass_decide_ridge(cell: vec2i, mass: u32, row: GlassSizeRow, motion: vec2u) {
+    let frame = glass_decide_frame;
+    let index = glass_frame_index(frame, cell);
+    let ahead = glass_motion_unpack(motion.x);
+    let fresh = motion.y & 65535u;
+    let octant = glass_motion_octant(ahead);
+    let left = glass_decide_beside(cell, octant + 6u);
+    let right = glass_decide_beside(cell, octant + 2u);
+    // The right side is the direction ahead turned from +x toward +y, whose y is the x of the direction.
+    let down = ahead.x;
+    if fresh == 0u {
+        let own = glass_size_key(mass, index);
+        let center = glass_ridge_center(cell, ahead, row.ahead);
+        let touched = glass_decide_touch(center, row.ridge);
+        let into = touched & GLASS_INDEX;
+        if touched > own && into != index && !glass_ridge_is(glass_decide_motion[into].y)
+            && glass_decide_fits(touched, mass) {
+            glass_decide_target[index] = into | GLASS_TAKEN;
+            glass_decide_next[index] = vec2u(0u);
+            return;
+        }
+        let lower = select(left, right, down > 0);
+        let fall = select(u32(abs(ahead.y)), u32(GLASS_CELL), lower == 8u);
+        let sags = mass * (fall >> 6u) > frame.ridge_hold << 8u;
+        if sags || row.ridge < GLASS_RIDGE_MIN || (left == 8u && right == 8u) {
+            let stands = glass_frame_holds(frame, center) && glass_decide_open(center);
+            glass_decide_target[index] = select(index, glass_frame_index(frame, center), stands);
+            glass_decide_next[index] = vec2u(0u);
+            return;
+        }
+    }
+    var goes = GLASS_STAYS | (left << 16u) | (right << 20u);
+    if left != 8u {
+        goes |= glass_ridge_flow(mass, -down, frame.ridge_drain);
+    }
+    if right != 8u {
+        goes |= glass_ridge_flow(mass, down, frame.ridge_drain) << 8u;
+    }
+    glass_decide_target[index] = goes;
+    glass_decide_next[index] = vec2u(motion.x, GLASS_RIDGE | (max(fresh, 1u) - 1u));
+}
+
 // Target of the drop of a cell, and its motion.
 fn glass_decide_drop(cell: vec2i) {
     let frame = glass_decide_frame;
@@ -110,20 +177,25 @@ fn glass_decide_drop(cell: vec2i) {
     let class_of = glass_size_class(mass);
     let row = glass_size_row(
         glass_decide_sizes.rows[class_of], glass_decide_sizes.rows[class_of + 1u], glass_size_fraction(mass));
+    let motion = glass_decide_motion[index];
+    if glass_ridge_is(motion.y) {
+        glass_decide_ridge(cell, mass, row, motion);
+        return;
+    }
     let own = glass_size_key(mass, index);
     let touched = glass_decide_touch(cell, row.radius);
     // A drop that could exceed the maximum mass of a cell stays separate.
-    if touched > own && glass_size_floor((touched >> 24u) + 1u) + mass <= GLASS_MAX_MASS {
+    if touched > own && glass_decide_fits(touched, mass) {
         glass_decide_target[index] = (touched & GLASS_INDEX) | GLASS_TAKEN;
         glass_decide_next[index] = vec2u(0u);
         return;
     }
     let reach = i32(row.radius >> 8u) + 1;
-    let before = glass_motion_unpack(glass_decide_motion[index].x);
+    let before = glass_motion_unpack(motion.x);
     let drive = frame.gravity + frame.air * i32(row.air) / GLASS_CELL;
     let hold = glass_decide_hold(cell, row.hold, drive, reach, any(before != vec2i(0)));
     var v = glass_motion_slide(before, drive, hold, row.slow);
-    var progress = i32(glass_decide_motion[index].y) + i32(glass_motion_length(v));
+    var progress = i32(motion.y) + i32(glass_motion_length(v));
     var goes = index;
     if progress >= GLASS_CELL {
         let step = frame.first_step + glass_decide_totals[GLASS_TOTAL_TICK];

@@ -29,7 +29,15 @@ struct GlassFrame {
     // Attraction by affinity and by wetness, in sixteenths.
     affinity_pull: u32,
     wet_pull: u32,
-    unused: u32,
+    // Fraction of its water that flows down a vertical ridge by a cell in one tick, in units of 1/262144 for each unit
+    // of mass.
+    ridge_drain: u32,
+    // Mass of a cell of a level ridge from which on it sags.
+    ridge_hold: u32,
+    // Ticks for which a ridge takes all drops that it touches after a blade has pushed it.
+    ridge_fresh: u32,
+    unused_1: u32,
+    unused_2: u32,
     // Probability that at least 1, 2, 3, ... 8 drops land in a block in one tick, in units of 2^-32.
     rain_few: vec4u,
     rain_many: vec4u,

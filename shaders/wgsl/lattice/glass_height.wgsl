@@ -37,7 +37,7 @@ fn glass_height_cap(radius: u32, sphere: u32, squared: u32) -> u32 {
     return glass_motion_root(sphere * sphere - squared) - glass_motion_root(sphere * sphere - radius * radius);
 }
 
-// Adds the cap of the drop of a cell.
+// Adds the cap of the drop of a cell. Of a ridge it is a cap as wide, which those of its neighbors make a ridge.
 fn glass_height_drop(cell: vec2i) {
     let index = glass_frame_index(glass_height_frame, cell);
     let mass = glass_height_mass[index];
@@ -47,12 +47,21 @@ fn glass_height_drop(cell: vec2i) {
     let class_of = glass_size_class(mass);
     let row = glass_size_row(
         glass_height_sizes.rows[class_of], glass_height_sizes.rows[class_of + 1u], glass_size_fraction(mass));
-    let v = glass_motion_unpack(glass_height_motion[index].x);
+    var v = glass_motion_unpack(glass_height_motion[index].x);
+    var center = cell;
+    var radius = row.radius;
+    var sphere = row.sphere;
+    if glass_ridge_is(glass_height_motion[index].y) {
+        center = glass_ridge_center(cell, v, row.ahead);
+        radius = row.ridge;
+        sphere = row.sphere * row.ridge / max(row.radius, 1u);
+        v = vec2i(0);
+    }
     // The rim may be 15 % beyond the disk.
-    let reach = i32(row.radius * glass_height_stretch(glass_motion_length(v)) / 56000u) + 1;
+    let reach = i32(radius * glass_height_stretch(glass_motion_length(v)) / 56000u) + 1;
     for (var y = -reach; y <= reach; y += 1) {
         for (var x = -reach; x <= reach; x += 1) {
-            let to = cell + vec2i(x, y);
+            let to = center + vec2i(x, y);
             if !glass_frame_holds(glass_height_frame, to) {
                 continue;
             }
@@ -60,7 +69,7 @@ fn glass_height_drop(cell: vec2i) {
             // The rim follows the affinity of the glass: inwards where it repels, outwards where it attracts.
             let rim = 320u - (glass_height_surface[at] & 255u) / 2u;
             let squared = (glass_height_squared(vec2i(x, y), v) >> 8u) * rim;
-            let height = glass_height_cap(row.radius, row.sphere, squared);
+            let height = glass_height_cap(radius, sphere, squared);
             if height != 0u {
                 atomicMax(&glass_height_cells[at], height);
             }

@@ -26,12 +26,18 @@ fn glass_settle_spill(mass: u32) -> u32 {
     return GLASS_MAX_MASS;
 }
 
-// Motion of the drop of a cell: that of the largest drop that moved to it by itself.
+// Motion of the drop of a cell: that of the largest drop that moved to it by itself. Water that a blade has pushed is a ridge.
 fn glass_settle_motion_of(mass: u32, winner: u32) -> vec2u {
     if mass == 0u || winner == 0u {
         return vec2u(0u);
     }
+    if winner >> 24u == GLASS_RIDGE_PUSHED {
+        return vec2u(glass_motion_pack(glass_ridge_ahead(winner)), GLASS_RIDGE | glass_settle_frame.ridge_fresh);
+    }
     let motion = glass_settle_decided[winner & GLASS_INDEX];
+    if winner >> 24u == GLASS_RIDGE_CLASS {
+        return motion;
+    }
     let v = glass_motion_merged(glass_motion_unpack(motion.x), winner >> 24u, mass);
     return vec2u(glass_motion_pack(v), motion.y);
 }

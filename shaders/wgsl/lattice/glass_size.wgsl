@@ -18,8 +18,10 @@ struct GlassSizeRow {
     sphere: u32,
     // Evaporation in one tick, in units of mass / 65536.
     loss: u32,
-    unused_1: u32,
-    unused_2: u32,
+    // Half-width of a ridge that has this mass in each cell of its length, in cells / 256.
+    ridge: u32,
+    // Distance of the middle of that ridge from its cells, ahead of the blade, in cells / 256.
+    ahead: u32,
 }
 
 // Class of a mass: the mass itself below 16, then eight classes per doubling.
@@ -67,7 +69,7 @@ fn glass_size_row(low: GlassSizeRow, high: GlassSizeRow, fraction: u32) -> Glass
         glass_size_mix(low.air, high.air, fraction),
         glass_size_mix(low.sphere, high.sphere, fraction),
         glass_size_mix(low.loss, high.loss, fraction),
-        0u,
-        0u,
+        glass_size_mix(low.ridge, high.ridge, fraction),
+        glass_size_mix(low.ahead, high.ahead, fraction),
     );
 }

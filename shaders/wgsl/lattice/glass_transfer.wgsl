@@ -77,25 +77,54 @@ fn glass_transfer_blade(cell: vec2i) -> u32 {
     return GLASS_OUT;
 }
 
-// Moves water to a cell, or to where a blade pushes it. Returns true if no blade diverts it.
-fn glass_transfer_bring(cell: vec2i, mass: u32) -> bool {
+// Leaves a film of the water that a blade pushes, as droplets behind it. Returns its mass.
+fn glass_transfer_film(blade: GlassBlade, cell: vec2i, mass: u32, tick: u32) -> u32 {
+    let index = glass_frame_index(glass_transfer_frame, cell);
+    let words = rng_draw(glass_transfer_frame.seed, index, tick, 17u);
+    // The ridge is as wide as a cell or as what the blade sweeps in a tick: this cell stands for so many.
+    let count = u32(glass_blade_moved(blade, cell));
+    let film = glass_transfer_dry(mass, blade.film * count, words.x);
+    let off = ((words.y >> 16u) * count) >> 16u;
+    let spot = cell - ((glass_blade_ahead(blade) * i32(off) + GLASS_CELL / 2) >> vec2u(14u));
+    if glass_transfer_open(spot) {
+        glass_transfer_put(spot, film);
+    } else {
+        glass_transfer_put(cell, film);
+    }
+    return film;
+}
+
+// Moves water to a cell, or to where a blade pushes it: into the ridge ahead of it, which evens out along the blade. Returns
+// true if no blade diverts it. `films`: a film stays behind.
+fn glass_transfer_bring(cell: vec2i, mass: u32, films: bool, tick: u32) -> bool {
     let which = glass_transfer_blade(cell);
     if which == GLASS_OUT {
         glass_transfer_put(cell, mass);
         return true;
     }
     let blade = glass_transfer_blades[which];
-    let to = glass_blade_push(blade, cell);
-    if glass_frame_holds(glass_transfer_frame, to) && !glass_transfer_open(to) {
-        glass_transfer_put(cell, mass);
-        return false;
-    }
     let left = (mass * blade.leaves) >> 8u;
     glass_transfer_put(cell, left);
-    if glass_transfer_open(to) {
-        glass_transfer_put(to, mass - left);
-    } else {
-        glass_transfer_count(GLASS_TOTAL_WIPED, mass - left);
+    var film = 0u;
+    if films {
+        film = glass_transfer_film(blade, cell, mass - left, tick);
+    }
+    let rest = mass - left - film;
+    for (var outward = -2; outward <= 2; outward += 2) {
+        let part = select(rest / 4u, rest - rest / 4u * 2u, outward == 0);
+        let to = glass_blade_push(blade, cell, outward);
+        if part == 0u {
+            continue;
+        }
+        if !glass_frame_holds(glass_transfer_frame, to) {
+            glass_transfer_count(GLASS_TOTAL_WIPED, part);
+        } else if glass_transfer_open(to) {
+            glass_transfer_put(to, part);
+            let key = glass_ridge_key(glass_blade_ahead(blade));
+            atomicMax(&glass_transfer_arrival[glass_frame_index(glass_transfer_frame, to)], key);
+        } else {
+            glass_transfer_put(cell, part);
+        }
     }
     return false;
 }
@@ -103,22 +132,46 @@ fn glass_transfer_bring(cell: vec2i, mass: u32) -> bool {
 // Target of the drop of a cell, followed through the larger drop that takes it.
 fn glass_transfer_goal(index: u32) -> u32 {
     let goal = glass_transfer_target[index];
-    if goal == GLASS_OUT || (goal & GLASS_TAKEN) == 0u {
+    if goal == GLASS_OUT {
+        return goal;
+    }
+    if (goal & GLASS_STAYS) != 0u {
+        return index;
+    }
+    if (goal & GLASS_TAKEN) == 0u {
         return goal;
     }
     let after = glass_transfer_target[goal & GLASS_INDEX];
-    return select(after & GLASS_INDEX, GLASS_OUT, after == GLASS_OUT);
+    if after == GLASS_OUT {
+        return GLASS_OUT;
+    }
+    return select(after, goal, (after & GLASS_STAYS) != 0u) & GLASS_INDEX;
 }
 
 // Leaves a bead where the drop and the bead do not touch.
 fn glass_transfer_trail(cell: vec2i, step: vec2i, drop_radius: u32, bead: u32) -> bool {
     let bead_radius = glass_transfer_sizes.rows[glass_size_class(bead) + 1u].radius;
     let behind = cell - step * i32((drop_radius + bead_radius + 512u) >> 8u);
-    if bead == 0u || !glass_transfer_open(behind) || glass_transfer_blade(behind) != GLASS_OUT {
+    // Water of a ridge that becomes a drop moves by more than a cell.
+    if bead == 0u || any(abs(step) > vec2i(1)) || !glass_transfer_open(behind) || glass_transfer_blade(behind) != GLASS_OUT {
         return false;
     }
     glass_transfer_put(behind, bead);
     return true;
+}
+
+// Moves water along a ridge to the next cells. Returns its mass.
+fn glass_transfer_flow(cell: vec2i, mass: u32, decided: u32, tick: u32) -> u32 {
+    var sum = 0u;
+    for (var side = 0u; side < 2u; side += 1u) {
+        let part = (mass * ((decided >> (8u * side)) & 255u)) >> 8u;
+        if part != 0u {
+            let to = cell + glass_motion_offset((decided >> (16u + 4u * side)) & 15u);
+            glass_transfer_bring(to, part, false, tick);
+            sum += part;
+        }
+    }
+    return sum;
 }
 
 // Moves the water of a cell.
@@ -129,7 +182,7 @@ fn glass_transfer_drop(cell: vec2i, tick: u32) {
     if mass == 0u {
         return;
     }
-    let key = glass_size_key(mass, index);
+    var key = glass_size_key(mass, index);
     let class_of = glass_size_class(mass);
     let row = glass_size_row(
         glass_transfer_sizes.rows[class_of], glass_transfer_sizes.rows[class_of + 1u], glass_size_fraction(mass));
@@ -148,9 +201,13 @@ fn glass_transfer_drop(cell: vec2i, tick: u32) {
             mass -= bead;
         }
     }
+    if (decided & GLASS_STAYS) != 0u && decided != GLASS_OUT {
+        key = (GLASS_RIDGE_CLASS << 24u) | index;
+        mass -= glass_transfer_flow(cell, mass, decided, tick);
+    }
     if goal == GLASS_OUT {
         glass_transfer_count(GLASS_TOTAL_EDGE, mass);
-    } else if glass_transfer_bring(glass_frame_cell(frame, goal), mass) && free && mass != 0u {
+    } else if glass_transfer_bring(glass_frame_cell(frame, goal), mass, free, tick) && free && mass != 0u {
         atomicMax(&glass_transfer_arrival[goal], key);
     }
 }

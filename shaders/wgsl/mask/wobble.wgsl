@@ -5,7 +5,7 @@
 // 1/2 grad G = (p (1 + q x + k h) + |p| (q up - k right)) / r^2.
 // The surface is met by the steps of mask_trace_step from the spheroid that the mode (2,0) makes of the drop.
 // Law: at each interface light is split into what leaves and what stays, unpolarized each time; what is left after the third
-// exit leaves with it.
+// exit leaves elsewhere, and is in no fraction.
 // Limits: a drop is taken to be met once on the way in and once on the way out; light that has not left after
 // MASK_WOBBLE_BOUNCES interfaces is not followed.
 // Twin: downpour_mask::wobble.
@@ -28,7 +28,7 @@ struct MaskWobbleLight {
     first: vec3f,
     second: vec3f,
     third: vec3f,
-    // Fractions of the light, in this order; what they leave of 1 is lost.
+    // Fractions of the light, in this order; what they leave of 1 is not followed.
     fractions: vec4f,
     // Interfaces passed up to there (from 1); 0 where there is no exit.
     interfaces: vec4f,
@@ -121,9 +121,6 @@ fn mask_wobble_light(drop: MaskWobbleDrop, origin: vec3f, direction: vec3f) -> M
         }
         rest *= kept;
         inside = optics_reflect(inside, normal);
-    }
-    if found > 0u {
-        light.fractions[found] += rest;
     }
     return light;
 }

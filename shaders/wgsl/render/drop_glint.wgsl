@@ -40,24 +40,46 @@ fn drop_glint_side(light: vec3f, right: vec3f, up: vec3f) -> vec2f {
     return select(vec2f(1.0, 0.0), side / sqrt(max(square, DROP_GLINT_TINY)), square > DROP_GLINT_AXIS);
 }
 
-// A position on the disk as one number, a whole one below 2^24: within 1/4094 of a radius.
-fn drop_glint_pack(position: vec2f) -> f32 {
-    let steps = floor(clamp(position, vec2f(-1.0), vec2f(1.0)) * DROP_GLINT_STEPS + 0.5 * DROP_GLINT_RANGE);
-    return steps.x * DROP_GLINT_RANGE + steps.y;
+// A position on the disk and the radius of a lamp's image there, up to a radius of the disk, as the bits of one number: the position
+// within 1/1022 of a radius, the image finer the smaller it is.
+fn drop_glint_pack(position: vec2f, image: f32) -> f32 {
+    let steps = vec2u(floor(clamp(position, vec2f(-1.0), vec2f(1.0)) * DROP_GLINT_STEPS + 0.5 * DROP_GLINT_RANGE));
+    let width = u32(sqrt(clamp(image, 0.0, 1.0)) * DROP_GLINT_WIDTHS + 0.5);
+    return bitcast<f32>(DROP_GLINT_NUMBER | (steps.x << 19u) | (steps.y << 9u) | width);
 }
 
 // The unpacked position.
 fn drop_glint_unpack(word: f32) -> vec2f {
-    // Whole numbers: a compiler may add in another order, and 2^23 + 0.5 is no f32.
-    let steps = u32(word);
-    let range = u32(DROP_GLINT_RANGE);
-    return (vec2f(f32(steps / range), f32(steps % range)) + 0.5 - 0.5 * DROP_GLINT_RANGE) / DROP_GLINT_STEPS;
+    let bits = bitcast<u32>(word);
+    let steps = vec2f(vec2u(bits >> 19u, bits >> 9u) & vec2u(DROP_GLINT_MASK));
+    return (steps + (0.5 - 0.5 * DROP_GLINT_RANGE)) / DROP_GLINT_STEPS;
 }
 
-// A glint of unit mean over the disk: a normal distribution `width` radii wide, `offset` radii from its middle.
-fn drop_glint_spot(offset: vec2f, width: f32) -> f32 {
-    let square = width * width;
-    return 0.5 / square * exp(-0.5 * dot(offset, offset) / square);
+// The unpacked radius of the image.
+fn drop_glint_image(word: f32) -> f32 {
+    let width = f32(bitcast<u32>(word) & DROP_GLINT_WIDTH_MASK) / DROP_GLINT_WIDTHS;
+    return width * width;
+}
+
+// The sine of the scattering angle: twice that of its half times the cosine of its half, exact at both ends.
+fn drop_glint_sine(light: vec3f, towards: vec3f) -> f32 {
+    let apart = light - towards;
+    let along = light + towards;
+    return 0.5 * sqrt(dot(apart, apart) * dot(along, along));
+}
+
+// The part of a bump from -1 to 1 that lies before a position, 0 to 1.
+fn drop_glint_before(position: f32) -> f32 {
+    let t = clamp(0.5 + 0.5 * position, 0.0, 1.0);
+    return t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
+}
+
+// The part of a glint that a pixel has: a bump that reaches `reach` pixels from its middle, which is `offset` pixels from the pixel's
+// upper left corner. All pixels together have all of it.
+fn drop_glint_pixel(offset: vec2f, reach: f32) -> f32 {
+    let across = drop_glint_before((1.0 - offset.x) / reach) - drop_glint_before(-offset.x / reach);
+    let down = drop_glint_before((1.0 - offset.y) / reach) - drop_glint_before(-offset.y / reach);
+    return across * down;
 }
 
 // The level part of a direction, (x, z), of length 1; nothing of a plumb one.

@@ -21,7 +21,7 @@ struct DropLightFrame {
 // Position relative to the scene's origin, and radius, meters. For the atlas then for each drop its axis, against its motion
 // as the eye sees it, and its id.
 @group(0) @binding(6) var<storage, read> drop_light_drops: array<vec4f>;
-// For each drop its mean radiance, then its glints: their part of the mean, and their position, packed. Or its streaks: their part
+// For each drop its mean radiance, then its glints: their part of the mean, and their position and the lamp's image, packed. Or its streaks: their part
 // of the mean, and -1 if it is mirrored, else 1; the three layers, and the weight of the first; the weight of the second, those of the
 // higher diameter and of the higher elevation, and 0. Or its
 // lamps in the form of Rousseau 2006: the irradiance over pi, and -1 less what the formula gives on the mean; the direction. Or its
@@ -122,9 +122,20 @@ fn drop_light_keep_streak(first: u32, radiance: vec3f, streak: AtlasSlot) {
     }
 }
 
-// The chord from the middle to the edge of a lamp's disk: that of the sun where the lamp has no size.
-fn drop_light_reach(light: RenderLight) -> f32 {
-    return max(light.chord, DROP_LIGHT_REACH);
+// The chord from the middle to the edge of a lamp's disk as a drop sees it: no lamp has less than the sun's.
+fn drop_light_reach(light: RenderLight, spread: f32) -> f32 {
+    return max(max(light.chord, spread), DROP_LIGHT_REACH);
+}
+
+// Radius of the image of a lamp on a drop's disk, in radii of the drop: of the disk that has its area. Law: a lamp whose rays leave the
+// drop at `position` from the axis is an ellipse there: along the side of the lamp as large as its disk times the change of the
+// position with the scattering angle, around the axis as large as its disk times the position over the angle's sine.
+fn drop_light_image(path: u32, angle: f32, sine: f32, position: f32, reach: f32) -> f32 {
+    let step = 1.0 / f32(DROP_LIGHT_ENTRIES);
+    let change = drop_light_entry(path, angle + step).w - drop_light_entry(path, angle - step).w;
+    let along = abs(change) / (2.0 * DROP_LIGHT_PI * step);
+    let around = abs(position) / max(sine, step);
+    return min(reach * sqrt(along * around), 1.0);
 }
 
 // Mean radiance of a lamp over a drop's whole disk, from the lamp's irradiance over pi and its direction.
@@ -200,10 +211,11 @@ fn drop_light_of(index: u32) {
             continue;
         }
         lit *= scene_visibility(drop.xyz, light.direction, light.distance);
+        let reach = drop_light_reach(lamp, light.spread);
         if form == DROP_LIGHT_IM_SUNG {
             sum += lit;
         } else if form == DROP_LIGHT_LAMPS_TRACED || form == DROP_LIGHT_LAMPS_ROUSSEAU {
-            sum += drop_light_keep_lamp(slot + 1u, lit, drop_light_reach(lamp), light.direction, towards);
+            sum += drop_light_keep_lamp(slot + 1u, lit, reach, light.direction, towards);
         } else if form == DROP_LIGHT_ROUSSEAU {
             let mean = drop_light_mean(towards, light.direction, drop_light_frame.terms);
             sum += lit * mean;
@@ -217,11 +229,13 @@ fn drop_light_of(index: u32) {
         } else {
             let angle = drop_glint_angle(light.direction, towards);
             let side = drop_glint_side(light.direction, right, up);
+            let sine = drop_glint_sine(light.direction, towards);
             let irradiance = lit * DROP_LIGHT_PI;
             sum += irradiance * drop_light_entry(0u, angle).rgb;
             for (var path = 1u; path <= DROP_LIGHT_PATHS && drop_light_frame.glints > 0u; path += 1u) {
                 let entry = drop_light_entry(path, angle);
-                drop_light_keep(slot + 1u, vec4f(irradiance * entry.rgb, drop_glint_pack(side * entry.w)));
+                let image = drop_light_image(path, angle, sine, entry.w, reach);
+                drop_light_keep(slot + 1u, vec4f(irradiance * entry.rgb, drop_glint_pack(side * entry.w, image)));
             }
         }
     }

@@ -12,38 +12,16 @@
 @group(0) @binding(5) var<storage, read> drops_clean: array<vec4f>;
 // At first the medium (medium_filter.wgsl): light of lamps, and mean distance and optical depth as halves. Then the rain.
 @group(0) @binding(6) var<storage, read_write> drops_layer: array<vec4f>;
-// Light of lamps on each drop of the list: the mean over it, and its brightest glints.
-@group(0) @binding(8) var<storage, read> drops_light: array<vec4f>;
 
 // The position of a ray on the plane at distance 1 through a drop's middle, along the right and up of its view.
 fn drops_on_plane(towards: vec3f, ray: vec3f) -> vec3f {
     return ray / max(dot(ray, towards), 1.0e-6) - towards;
 }
 
-// The first of a drop's numbers of light.
-fn drops_light_row(index: u32) -> u32 {
-    return index * (1u + drops_frame.glints);
-}
-
-// Light of lamps at a position of a drop's disk, in radii: its glints as spots of some width, and the rest everywhere.
-fn drops_spots(index: u32, at: vec2f, width: f32) -> vec3f {
-    let row = drops_light_row(index);
-    var light = drops_light[row].rgb;
-    // An atlas has streaks, and nothing of a drop that stands still but its mean.
-    let count = select(drops_frame.glints, 0u, drops_frame.atlas > 0u);
-    for (var k = 1u; k <= count; k += 1u) {
-        let glint = drops_light[row + k];
-        if glint.w > 0.0 {
-            light += glint.rgb * (drop_glint_spot(at - drop_glint_unpack(glint.w), width) - 1.0);
-        }
-    }
-    return max(light, vec3f(0.0));
-}
-
 // Light of lamps in the form of Rousseau 2006 at a position of a drop's mask, by the normal there, which halves the angle between the
 // eye and what is mirrored: what it is more than the mean over the drop.
 fn drops_facing(index: u32, drop: DropsDrop, x: f32, y: f32) -> vec3f {
-    let row = drops_light_row(index);
+    let row = drops_glint_row(index);
     var light = vec3f(0.0);
     // An atlas has streaks, other forms have glints.
     if drops_frame.atlas > 0u || drops_frame.glints < 2u || drops_light[row + 1u].w >= 0.0 {
@@ -64,22 +42,6 @@ fn drops_facing(index: u32, drop: DropsDrop, x: f32, y: f32) -> vec3f {
     return light;
 }
 
-// Light of lamps on a drop that passes, for as long as it does: spots have become lines.
-fn drops_lines(index: u32, chord: StreakChord, width: f32) -> vec3f {
-    let row = drops_light_row(index);
-    let part = (chord.high - chord.low) * 0.5;
-    var light = drops_light[row].rgb * chord.fraction;
-    for (var k = 1u; k <= drops_frame.glints; k += 1u) {
-        let glint = drops_light[row + k];
-        if glint.w > 0.0 {
-            let position = drop_glint_unpack(glint.w);
-            let off = chord.aside - (position.x * chord.path.y - position.y * chord.path.x);
-            light += glint.rgb * (drops_line(off, width) * chord.pace - chord.fraction);
-        }
-    }
-    return max(light, vec3f(0.0)) * part;
-}
-
 // The phase of the mode (2,0), in turns, where a passing drop is at a fraction of its way.
 fn drops_turns(drop: DropsDrop, way: f32) -> f32 {
     return drop.mode_phase.z + drop.cycles.x * streak_time(drop.depth_ratio, way);
@@ -87,7 +49,7 @@ fn drops_turns(drop: DropsDrop, way: f32) -> f32 {
 
 // Light of lamps on a passing drop by the streaks of an atlas, for as long as it passes a position on the plane.
 fn drops_streaks(index: u32, drop: DropsDrop, chord: StreakChord, at: vec2f) -> vec3f {
-    let row = drops_light_row(index);
+    let row = drops_glint_row(index);
     let part = (chord.high - chord.low) * 0.5;
     let turns = drops_turns(drop, streak_nearest(drop, at));
     var light = drops_light[row].rgb * chord.fraction;
@@ -104,7 +66,7 @@ fn drops_streaks(index: u32, drop: DropsDrop, chord: StreakChord, at: vec2f) -> 
 
 // Light of lamps on a drop that is not sampled, as a radiance over all of it: with an atlas bright and dark along its path.
 fn drops_beads(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec3f {
-    let row = drops_light_row(index);
+    let row = drops_glint_row(index);
     var light = drops_light[row].rgb;
     if drops_frame.atlas == 0u || drop.spread > 1.0 {
         return light;
@@ -125,11 +87,6 @@ fn drops_beads(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec3f {
         }
     }
     return max(light, vec3f(0.0));
-}
-
-// A spot of unit mean over the disk, summed along a line that passes it at some distance; all in radii.
-fn drops_line(off: f32, width: f32) -> f32 {
-    return DROPS_LINE / width * exp(-0.5 * off * off / (width * width));
 }
 
 // True for a splash, whose masks are behind those of the diameters.
@@ -170,14 +127,13 @@ fn drops_still(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
         if abs(sx) < 1.0 && abs(sy) < 1.0 {
             var shown = drops_shade_ray(DropsShade(drop.towards, drop.half_extent, lean, spacing, drop.mask_index), sx, sy);
             if !small {
-                let at = vec2f(sx, sy) * drop.half_extent;
                 var light: vec3f;
                 if drops_is_splash(drop) {
                     // Lamps shine on its rims as on so many small drops: no glint has its place on it.
                     let bends = drops_bent(drops_mask_at(drop.mask_index, sx, sy).direction);
-                    light = drops_light[drops_light_row(index)].rgb * bends;
+                    light = drops_light[drops_glint_row(index)].rgb * bends;
                 } else {
-                    light = drops_spots(index, at, drops_glint_width(drop)) + drops_facing(index, drop, sx, sy);
+                    light = drops_glint_rest(index) + drops_facing(index, drop, sx, sy);
                 }
                 shown += vec4f(light * shown.w, 0.0);
             }
@@ -185,15 +141,14 @@ fn drops_still(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
         }
     }
     if small {
-        let mean = sum.rgb / max(sum.w, 1.0e-20) + drops_light[drops_light_row(index)].rgb;
+        let mean = sum.rgb / max(sum.w, 1.0e-20) + drops_light[drops_glint_row(index)].rgb;
         return vec4f(mean, 1.0) * spread;
     }
-    return sum / f32(n * n);
-}
-
-// The width of a glint, in radii: no line is thinner than half a pixel.
-fn drops_glint_width(drop: DropsDrop) -> f32 {
-    return max(0.5 * drops_frame.camera.pixel_angle / drop.slope, DROPS_GLINT);
+    sum /= f32(n * n);
+    if !drops_is_splash(drop) {
+        sum += vec4f(drops_glint_light(index, drop, x, y), 0.0);
+    }
+    return sum;
 }
 
 // The part of a chord that passes during the exposure, by the weighted mean over its middle points: what a table keeps
@@ -261,11 +216,15 @@ fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
         if drops_frame.atlas > 0u {
             sum += vec4f(drops_streaks(index, drop, chord, position), 0.0);
         } else {
-            sum += vec4f(drops_lines(index, chord, drops_glint_width(drop)), 0.0);
+            sum += vec4f(drops_glint_rest(index) * (chord.fraction * (chord.high - chord.low) * 0.5), 0.0);
         }
     }
     sum /= f32(drop.grid);
-    return sum / max(sum.w, 1.0);
+    sum /= max(sum.w, 1.0);
+    if drop.kind == DROPS_LOOP {
+        sum += vec4f(drops_glint_light(index, drop, x, y), 0.0);
+    }
+    return sum;
 }
 
 // Position on the plane at distance 1 through a drop's center, along the right and up of its view, of a place on the picture.
@@ -297,8 +256,8 @@ fn drops_pixel(index: u32, x: u32, y: u32, scene: f32) -> vec4f {
     } else {
         shown = drops_streak(index, drop, x, y);
     }
-    if shown.w <= 0.0 {
-        return shown;
+    if max(max(shown.r, shown.g), max(shown.b, shown.w)) <= 0.0 {
+        return vec4f(0.0);
     }
     if drops_frame.streak_color == STREAK_WHITE {
         shown = vec4f(drops_capture_texel(drops_frame.capture_last, 0, 0) * shown.w, shown.w);
@@ -357,7 +316,7 @@ fn drops_over(x: u32, y: u32) -> vec4f {
             break;
         }
         let shown = drops_pixel(drop, x, y, scene);
-        if shown.w <= 0.0 {
+        if max(max(shown.r, shown.g), max(shown.b, shown.w)) <= 0.0 {
             continue;
         }
         let distance = min(drops_list[drop].distance, end);

@@ -1,6 +1,6 @@
 // Water on a pane as smooth surfaces: each drop is a cap of a sphere over its disk, with an outline that is not quite round,
 // drawn out behind if it runs, and steeper on the side to which its weight pulls it (from the receding angle to the
-// advancing one).
+// advancing one). Water ahead of a wiper is a ridge: pieces of a cylinder with round ends, which overlap.
 // Meters on the pane: x right, y down it, z out of it, away from the eye.
 // Twin: downpour_render::glass::water.
 
@@ -18,14 +18,24 @@ struct GlassPictureDrop {
     lean: f32,
     // Direction of the steeper side, of length 1.
     droop: vec2f,
-    unused: vec2f,
+    // Half of the axis of a ridge: the cap is that of the nearest position of the axis. 0: a drop.
+    axis: vec2f,
     // The outline: what is added to the squared distance with the cosine and the sine of twice the angle, and of thrice.
     lobes: vec4f,
 }
 
+// Vector from the center of a drop, or the nearest position of a ridge's axis, to a position.
+fn glass_picture_water_away(drop: GlassPictureDrop, position: vec2f) -> vec2f {
+    let away = position - drop.center;
+    let axis = drop.axis;
+    let squared = axis.x * axis.x + axis.y * axis.y;
+    let fraction = (away.x * axis.x + away.y * axis.y) / max(squared, 1.0e-18);
+    return away - axis * clamp(fraction, -1.0, 1.0);
+}
+
 // Height over the glass, and its slopes along x and y. Beyond the outline the height is below 0.
 fn glass_picture_water_cap(drop: GlassPictureDrop, position: vec2f) -> vec3f {
-    let away = position - drop.center;
+    let away = glass_picture_water_away(drop, position);
     let ahead = away.x * drop.along.x + away.y * drop.along.y;
     let stretch = select(drop.behind, 1.0, ahead > 0.0);
     let x = ahead * stretch;
@@ -46,7 +56,9 @@ fn glass_picture_water_cap(drop: GlassPictureDrop, position: vec2f) -> vec3f {
     let down_y = steep * of_y;
     let slope = drop.along * down_x + vec2f(-drop.along.y, drop.along.x) * down_y;
     let pulled = drop.lean * r;
-    let fraction = max(1.0 + pulled * (away.x * drop.droop.x + away.y * drop.droop.y), 0.1);
+    // A ridge grows along its axis.
+    let off = position - drop.center;
+    let fraction = max(1.0 + pulled * (off.x * drop.droop.x + off.y * drop.droop.y), 0.1);
     return vec3f(height * fraction, slope * fraction + drop.droop * (height * pulled));
 }
 

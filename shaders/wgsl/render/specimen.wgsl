@@ -98,27 +98,36 @@ fn specimen_hits(traced: MaskTracedDrop, ray: SpecimenRay) -> bool {
     return nearest.excess < 0.0 && -ray.reach < along;
 }
 
-// The first interface: what is reflected outside leaves, the rest enters.
-fn specimen_enter(traced: MaskTracedDrop, ray: SpecimenRay) -> SpecimenLight {
-    let point = mask_trace_meet(traced, ray.foot, ray.direction, -1.0);
-    let normal = mask_trace_normal(traced, point);
-    let reflectance = optics_fresnel(-dot(ray.direction, normal), traced.index);
-    let inside = optics_refract(ray.direction, normal, 1.0 / traced.index).xyz;
-    let exit = optics_reflect(ray.direction, normal);
+// Light that meets a drop at a point with a normal: what is reflected outside leaves, the rest enters.
+fn specimen_split_outside(point: vec3f, normal: vec3f, direction: vec3f, index: f32) -> SpecimenLight {
+    let reflectance = optics_fresnel(-dot(direction, normal), index);
+    let inside = optics_refract(direction, normal, 1.0 / index).xyz;
+    let exit = optics_reflect(direction, normal);
     return SpecimenLight(point, reflectance, exit, 1.0 - reflectance, normalize(inside));
 }
 
-// The next interface from inside. If less than `least` would stay inside, all leaves.
-fn specimen_bounce(traced: MaskTracedDrop, light: SpecimenLight, least: f32) -> SpecimenLight {
-    let point = mask_trace_meet(traced, light.point, light.inside, 1.0);
-    let normal = mask_trace_normal(traced, point);
-    let reflectance = optics_fresnel(dot(light.inside, normal), 1.0 / traced.index);
-    let through = optics_refract(light.inside, -normal, traced.index).xyz;
+// Light that meets the surface from inside at a point with a normal. If less than `least` would stay inside, all leaves: in the
+// direction of the last exit, if nothing is transmitted here.
+fn specimen_split_inside(light: SpecimenLight, point: vec3f, normal: vec3f, index: f32, least: f32) -> SpecimenLight {
+    let reflectance = optics_fresnel(dot(light.inside, normal), 1.0 / index);
+    let through = optics_refract(light.inside, -normal, index).xyz;
     let total = !(reflectance < 1.0);
     let kept = light.rest * reflectance;
     let rest = select(kept, 0.0, kept < least);
     let exit = select(through, light.exit, total);
     return SpecimenLight(point, light.rest - rest, exit, rest, optics_reflect(light.inside, normal));
+}
+
+// The first interface.
+fn specimen_enter(traced: MaskTracedDrop, ray: SpecimenRay) -> SpecimenLight {
+    let point = mask_trace_meet(traced, ray.foot, ray.direction, -1.0);
+    return specimen_split_outside(point, mask_trace_normal(traced, point), ray.direction, traced.index);
+}
+
+// The next interface from inside.
+fn specimen_bounce(traced: MaskTracedDrop, light: SpecimenLight, least: f32) -> SpecimenLight {
+    let point = mask_trace_meet(traced, light.point, light.inside, 1.0);
+    return specimen_split_inside(light, point, mask_trace_normal(traced, point), traced.index, least);
 }
 
 // The angle of the point (x, y) in turns, in [-0.5, 0.5]; 0 at the origin.

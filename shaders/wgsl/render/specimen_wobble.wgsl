@@ -119,27 +119,18 @@ fn specimen_wobble_meet(drop: SpecimenWobble, ray: SpecimenRay) -> vec2f {
     return specimen_wobble_cross(drop, ray.foot, ray.direction, start, span.y, -1.0);
 }
 
-// The first interface, at the position s of the ray: what is reflected outside leaves, the rest enters.
+// The first interface, at the position s of the ray.
 fn specimen_wobble_enter(drop: SpecimenWobble, ray: SpecimenRay, s: f32) -> SpecimenLight {
     let point = ray.foot + ray.direction * s;
     let normal = normalize(specimen_wobble_surface(drop, point).half_gradient);
-    let reflectance = optics_fresnel(-dot(ray.direction, normal), drop.index);
-    let inside = optics_refract(ray.direction, normal, 1.0 / drop.index).xyz;
-    let exit = optics_reflect(ray.direction, normal);
-    return SpecimenLight(point, reflectance, exit, 1.0 - reflectance, normalize(inside));
+    return specimen_split_outside(point, normal, ray.direction, drop.index);
 }
 
-// The next interface from inside. If less than `least` would stay inside, all leaves.
+// The next interface from inside.
 fn specimen_wobble_bounce(drop: SpecimenWobble, light: SpecimenLight, least: f32) -> SpecimenLight {
     let end = specimen_wobble_span(drop, light.point, light.inside).y;
     let s = specimen_wobble_cross(drop, light.point, light.inside, 0.0, end, 1.0).x;
     let point = light.point + light.inside * s;
     let normal = normalize(specimen_wobble_surface(drop, point).half_gradient);
-    let reflectance = optics_fresnel(dot(light.inside, normal), 1.0 / drop.index);
-    let through = optics_refract(light.inside, -normal, drop.index).xyz;
-    let total = !(reflectance < 1.0);
-    let kept = light.rest * reflectance;
-    let rest = select(kept, 0.0, kept < least);
-    let exit = select(through, light.exit, total);
-    return SpecimenLight(point, light.rest - rest, exit, rest, optics_reflect(light.inside, normal));
+    return specimen_split_inside(light, point, normal, drop.index, least);
 }

@@ -4,7 +4,8 @@
 // give each. Between the rays that were traced, directions go as a polynomial of degree two across, along and in time, from ray to
 // ray that pass as many interfaces. So the ray's own patch of the drop is known: how wide the environment is averaged, and where
 // in the patch a lamp shines, whose disk (or, where the patch's points are farther apart, a spot that some of them meet) is sampled.
-// Light lost inside has the mean radiance of the environment, without lamps: it travels around the rim and comes out there.
+// Light that leaves after the exits that are followed has the mean radiance of environment and lamps over all directions: it travels
+// around the rim and comes out there.
 // Layout: behind the chords of streak_rays.wgsl, for each row of the profile and each fine column the light of the chord's first
 // part, of the first two, three and of all four, each over the length of the whole chord.
 // Twin: downpour_render::rain::streak_light.
@@ -27,11 +28,20 @@ struct StreakExit {
     passed: u32,
 }
 
-// Change of an exit along an axis: first and second difference per ray, and first difference of its fraction.
+// Change of an exit along an axis: first and second difference per ray of its direction and of its fraction.
 struct StreakChange {
     first: vec3f,
     fraction: f32,
     second: vec3f,
+    fraction_second: f32,
+}
+
+// Cell of a ray in the grid of its row: columns of rays across the motion, each of several fine columns, and rays along a chord.
+struct StreakCell {
+    column: u32,
+    tap: u32,
+    columns: u32,
+    fine: u32,
 }
 
 // A ray's patch: its exit and how that goes across, along and in time.
@@ -73,15 +83,16 @@ fn streak_light_change(before: StreakExit, here: StreakExit, after: StreakExit) 
             (after.direction - before.direction) * 0.5,
             (after.fraction - before.fraction) * 0.5,
             after.direction + before.direction - here.direction * 2.0,
+            after.fraction + before.fraction - here.fraction * 2.0,
         );
     }
     if has_after {
-        return StreakChange(after.direction - here.direction, after.fraction - here.fraction, vec3f(0.0));
+        return StreakChange(after.direction - here.direction, after.fraction - here.fraction, vec3f(0.0), 0.0);
     }
     if has_before {
-        return StreakChange(here.direction - before.direction, here.fraction - before.fraction, vec3f(0.0));
+        return StreakChange(here.direction - before.direction, here.fraction - before.fraction, vec3f(0.0), 0.0);
     }
-    return StreakChange(vec3f(0.0), 0.0, vec3f(0.0));
+    return StreakChange(vec3f(0.0), 0.0, vec3f(0.0), 0.0);
 }
 
 // The mixed second difference, from the two neighbors on a diagonal.
@@ -155,6 +166,18 @@ fn streak_light_direction(ray: StreakPatch, position: vec3f) -> vec3f {
     return normalize(linear + squares + mixed);
 }
 
+// The fraction of the light at a position of a patch.
+fn streak_light_fraction(ray: StreakPatch, position: vec3f) -> f32 {
+    let linear = ray.middle.fraction
+        + ray.across.fraction * position.x
+        + ray.along.fraction * position.y
+        + ray.later.fraction * position.z;
+    let squares = ray.across.fraction_second * (0.5 * position.x * position.x)
+        + ray.along.fraction_second * (0.5 * position.y * position.y)
+        + ray.later.fraction_second * (0.5 * position.z * position.z);
+    return clamp(linear + squares, 0.0, 1.0);
+}
+
 // Width of a patch across and along, at a time.
 fn streak_light_size(ray: StreakPatch, later: f32) -> vec2f {
     let across = ray.across.first + ray.across_later * later;
@@ -162,9 +185,10 @@ fn streak_light_size(ray: StreakPatch, later: f32) -> vec2f {
     return sqrt(vec2f(dot(across, across), dot(along, along)));
 }
 
-// Fraction of a patch's points, and the part of the fine column that each is in, that lie in a lamp's disk. Its radiance is that of an
-// irradiance of 1. `reach`: the chord from the middle to the edge of the disk; `span`: rays between two rows of the profile;
-// `shift` tells the points of a patch from its neighbors'.
+// Light of a lamp with an irradiance of 1 in the fine columns of a ray's cell, as parts of the light of a chord: the mean over the
+// points of its patch, of which those that see the lamp's disk show its radiance. `reach`: the chord from the middle to the edge of the
+// disk; `span`: rays between two rows of the profile; `shift` tells the points of a patch from its neighbors'. A point stands for the
+// part of the outline's area around it; what is looked up between fine columns then has the light of the points.
 fn streak_light_spot(
     ray: StreakPatch,
     later: f32,
@@ -172,7 +196,7 @@ fn streak_light_spot(
     size: vec2f,
     lamp: vec3f,
     reach: f32,
-    fine: u32,
+    cell: StreakCell,
     shift: vec3f,
 ) -> vec4f {
     var spots = vec4f(0.0);
@@ -182,22 +206,37 @@ fn streak_light_spot(
     let area = max(size.x, least * size.y) * max(size.y, least * size.x);
     let spot = STREAK_SPOT_WIDTH * sqrt(area / f32(STREAK_SPOTS));
     let wide = max(reach, spot);
-    if sqrt(dot(middle, middle)) > wide + STREAK_SPOT_REACH * (size.x + size.y + moves) {
+    // The edge of a disk is as soft as points are apart.
+    let edge = select(0.5 * spot, 0.0, spot > reach);
+    if sqrt(dot(middle, middle)) > wide + edge + STREAK_SPOT_REACH * (size.x + size.y + moves) {
         return spots;
     }
-    let radiance = f32(fine) / (f32(STREAK_SPOTS) * 2.0 * STREAK_QUARTER * wide * wide);
+    let whole = 2.0 * STREAK_QUARTER * (wide * wide + edge * edge / 3.0);
+    let radiance = f32(cell.fine) / (f32(STREAK_SPOTS) * whole);
     for (var k = 0u; k < STREAK_SPOTS; k += 1u) {
         let number = f32(k) + 0.5;
         let steps = vec3f(1.0 / f32(STREAK_SPOTS), STREAK_SPOT_ALONG, STREAK_SPOT_LATER);
         let point = fract(number * steps + shift);
-        let position = point - 0.5;
-        let apart = streak_light_direction(ray, vec3f(position.xy, later + position.z * span)) - lamp;
-        let off = dot(apart, apart) / (wide * wide);
-        if off < 1.0 {
+        let position = vec3f(point.xy - 0.5, later + (point.z - 0.5) * span);
+        let apart = streak_light_direction(ray, position) - lamp;
+        let off = sqrt(dot(apart, apart));
+        if off < wide + edge {
             // A disk, or a spot that fades toward its edge.
-            let faded = select(1.0, 2.0 * (1.0 - off), spot > reach);
-            spots[min(u32(point.x * f32(fine)), fine - 1u)] += radiance * faded;
+            let soft = clamp(0.5 + 0.5 * (wide - off) / max(edge, STREAK_SPOT_EDGE), 0.0, 1.0);
+            let faded = select(soft, 2.0 * (1.0 - off * off / (wide * wide)), spot > reach);
+            let part = min(u32(point.x * f32(cell.fine)), cell.fine - 1u);
+            let along = streak_cell_slope(f32(cell.tap) + point.y, cell.columns);
+            let across = streak_cell_slope(f32(cell.column) + point.x, cell.columns);
+            // Chords are the shorter the farther out, and columns stand the closer.
+            let density = along * across * across;
+            spots[part] += radiance * faded * density * streak_light_fraction(ray, position);
         }
+    }
+    let count = cell.columns * cell.fine;
+    // Half the length of a chord is 1.
+    let length = STREAK_QUARTER / f32(cell.columns);
+    for (var part = 0u; part < cell.fine; part += 1u) {
+        spots[part] *= length / streak_cell_weight(cell.column * cell.fine + part, count);
     }
     return spots;
 }
@@ -208,6 +247,18 @@ fn streak_light_view(drop: DropsDrop, time: f32) -> vec3f {
     let up = cross(right, drop.towards);
     let middle = streak_path_instant(drop, time).middle;
     return normalize(drop.towards + right * middle.x + up * middle.y);
+}
+
+// Mean radiance of the lamps over all directions.
+fn streak_light_even(first_lamp: u32) -> vec3f {
+    var sum = vec3f(0.0);
+    for (var k = 0u; k < STREAK_LAMPS; k += 1u) {
+        let lamp = streak_light_lamps[first_lamp + 1u + 2u * k];
+        if lamp.w > 0.0 {
+            sum += lamp.rgb;
+        }
+    }
+    return sum * (0.125 / STREAK_QUARTER);
 }
 
 // Light of the lamps in the form of Rousseau 2006 where a ray meets the drop: by the normal there, which halves the angle between
@@ -238,7 +289,7 @@ fn streak_light_column(path_index: u32, row: u32, column: u32) {
     let first_lamp = path_index * (1u + 2u * STREAK_LAMPS);
     let fine = path.fine;
     let none = streak_light_lamps[first_lamp].rgb;
-    let lost = drops_capture_texel(drops_frame.capture_last, 0, 0);
+    let lost = drops_capture_texel(drops_frame.capture_last, 0, 0) + streak_light_even(first_lamp);
     let view = streak_light_view(drop, f32(row) / f32(path.profile_rows - 1u));
     var sums = array<vec3f, 4>(vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0));
     let per_part = path.columns / STREAK_SUMS;
@@ -249,6 +300,7 @@ fn streak_light_column(path_index: u32, row: u32, column: u32) {
         let weight = 0.5 * (high - low);
         let number = f32((row * path.columns + column) * path.columns + tap);
         let shift = fract(number * vec3f(STREAK_SPOT_FIRST, STREAK_SPOT_SECOND, STREAK_SPOT_THIRD));
+        let cell = StreakCell(column, tap, path.columns, fine);
         var even = none + streak_light_facing(path, first_lamp, view, i32(nearest), i32(column), i32(tap));
         var seen = vec3f(0.0);
         var rest = 1.0;
@@ -271,9 +323,9 @@ fn streak_light_column(path_index: u32, row: u32, column: u32) {
                     continue;
                 }
                 let towards = streak_light_lamps[first_lamp + 2u + 2u * k].xyz;
-                let spots = streak_light_spot(ray, later, rays_per_row, size, towards, lamp.w, fine, shift);
+                let spots = streak_light_spot(ray, later, rays_per_row, size, towards, lamp.w, cell, shift);
                 for (var part = 0u; part < fine; part += 1u) {
-                    sums[part] += lamp.rgb * (spots[part] * fraction * weight);
+                    sums[part] += lamp.rgb * spots[part];
                 }
             }
         }

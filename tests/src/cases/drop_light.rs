@@ -7,8 +7,9 @@ use downpour_render::camera::Viewpoint;
 use downpour_render::gpu::DropLightPipeline;
 use downpour_render::light::LightSource;
 use downpour_render::rain::glint::{
-    drop_glint_angle, drop_glint_level, drop_glint_pack, drop_glint_right, drop_glint_rousseau,
-    drop_glint_side, drop_glint_spot, drop_glint_unpack,
+    drop_glint_angle, drop_glint_before, drop_glint_image, drop_glint_level, drop_glint_pack,
+    drop_glint_pixel, drop_glint_right, drop_glint_rousseau, drop_glint_side, drop_glint_sine,
+    drop_glint_unpack,
 };
 use downpour_render::rain::light::{
     DropLightForm, DropLightOptions, DropLightTable, DropLights, drop_light_mean,
@@ -33,10 +34,10 @@ fn vec3(args: &mut Args<'_>) -> Vec3 {
     Vec3::from(args.f32s())
 }
 
-/// A packed position.
+/// A packed position and image.
 fn packed(random: [u32; 4]) -> Vec<u32> {
     let position = Vec2::new(rng_unit(random[0]), rng_unit(random[1])) * 2.0 - 1.0;
-    drop_glint_pack(position).words()
+    drop_glint_pack(position, rng_unit(random[2])).words()
 }
 
 /// Two directions that are no worse than a hundredth of a radian from each other's line.
@@ -73,10 +74,10 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         ),
         case(
             "drop_glint_pack",
-            &[position, position],
-            Tol::absolute(1.0, "a whole number; at its border a fused product may give the next")
-                .with_outliers(1.0e-3),
-            |a| drop_glint_pack(Vec2::from(a.f32s())).words(),
+            &[position, position, Uniform(-0.1, 1.1)],
+            Tol::exact("whole numbers as bits; at a border a fused product or a square root (2.5 ulp) may give the next")
+                .with_outliers(2.0e-3),
+            |a| drop_glint_pack(Vec2::from(a.f32s()), a.f32()).words(),
         ),
         case(
             "drop_glint_unpack",
@@ -85,10 +86,23 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             |a| drop_glint_unpack(a.f32()).to_array().words(),
         ),
         case(
-            "drop_glint_spot",
-            &[position, position, Uniform(0.05, 1.0)],
-            Tol::relative(1.0e-3, 1.0e-6, "exp of numbers down to -400 (3 + 2|x| ulp)"),
-            |a| drop_glint_spot(Vec2::from(a.f32s()), a.f32()).words(),
+            "drop_glint_image",
+            &[Made(packed)],
+            Tol::absolute(1.0e-6, "a whole number, a division (2.5 ulp) and a square"),
+            |a| drop_glint_image(a.f32()).words(),
+        ),
+        case("drop_glint_sine", &[Unit3, Unit3], root, |a| drop_glint_sine(vec3(a), vec3(a)).words()),
+        case(
+            "drop_glint_before",
+            &[Uniform(-1.2, 1.2)],
+            Tol::absolute(1.0e-6, "a polynomial of numbers up to 1"),
+            |a| drop_glint_before(a.f32()).words(),
+        ),
+        case(
+            "drop_glint_pixel",
+            &[Uniform(-3.0, 4.0), Uniform(-3.0, 4.0), Uniform(0.9, 4.0)],
+            Tol::absolute(3.0e-6, "differences of polynomials of quotients (2.5 ulp)"),
+            |a| drop_glint_pixel(Vec2::from(a.f32s()), a.f32()).words(),
         ),
         case("drop_glint_level", &[Unit3], root, |a| drop_glint_level(vec3(a)).to_array().words()),
         case(
@@ -185,7 +199,7 @@ fn rows_case(
     let lighting = scenes.upload(scene)?.lighting(gpu, &frame)?;
     let pass = pipeline.prepare(gpu, &lighting, &pipeline.upload(table)?, &lights, drops)?;
     gpu.submit(&pass.dispatches())?;
-    // Positions are compared as positions, streaks of an atlas as they are.
+    // Positions and images are compared as such, streaks of an atlas as they are.
     let glints = if options.form == DropLightForm::Atlas { 0 } else { options.glints };
     let words = |rows: &[[f32; 4]]| -> Vec<u32> {
         let of_drop = |rows: &[[f32; 4]]| {
@@ -196,6 +210,7 @@ fn rows_case(
             for row in &rows[1..] {
                 words.extend([row[0], row[1], row[2]].words());
                 words.extend(drop_glint_unpack(row[3]).to_array().words());
+                words.extend(drop_glint_image(row[3]).words());
             }
             words
         };
@@ -205,7 +220,7 @@ fn rows_case(
         arguments: drops[..cpu.len() / lights.stride()].iter().map(IntoWords::words).collect(),
         cpu: Cpu(words(&cpu)),
         gpu: FromGpu(words(&pass.read()?)),
-        kinds: vec![WordKind::Float; if glints == 0 { 4 * lights.stride() } else { 4 + 5 * glints as usize }],
+        kinds: vec![WordKind::Float; if glints == 0 { 4 * lights.stride() } else { 4 + 6 * glints as usize }],
     })
 }
 

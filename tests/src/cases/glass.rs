@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use downpour_gpu::{Gpu, GpuError};
-use downpour_lattice::glass::blade::{GlassBlade, glass_blade_push, glass_blade_side, glass_blade_sweeps};
+use downpour_lattice::glass::blade::{
+    GlassBlade, glass_blade_ahead, glass_blade_moved, glass_blade_push, glass_blade_side, glass_blade_sweeps,
+};
 use downpour_lattice::glass::frame::{
     GlassFrame, glass_frame_cell, glass_frame_holds, glass_frame_index, glass_frame_landing,
 };
@@ -14,6 +16,9 @@ use downpour_lattice::glass::motion::{
     glass_motion_unpack, glass_motion_weight, glass_motion_wetness,
 };
 use downpour_lattice::glass::normal::glass_normal_unit;
+use downpour_lattice::glass::ridge::{
+    glass_ridge_ahead, glass_ridge_center, glass_ridge_flow, glass_ridge_is, glass_ridge_key,
+};
 use downpour_lattice::glass::size::{
     GlassSizeRow, glass_size_class, glass_size_floor, glass_size_fraction, glass_size_key, glass_size_mix,
     glass_size_row,
@@ -74,14 +79,13 @@ fn words(v: IVec2) -> Vec<u32> {
 /// The words of a row, each below 2^20.
 fn row_words(random: [u32; 4]) -> Vec<u32> {
     let more = rng_draw([random[0], random[1]], random[2], random[3], 1);
-    let mut words: Vec<u32> = random.into_iter().chain(more).map(|w| w >> 12).collect();
-    words[6..].fill(0);
+    let words: Vec<u32> = random.into_iter().chain(more).map(|w| w >> 12).collect();
     words
 }
 
 fn row(args: &mut Args<'_>) -> GlassSizeRow {
-    let [radius, hold, slow, air, sphere, loss, unused_1, unused_2] = args.u32s();
-    GlassSizeRow { radius, hold, slow, air, sphere, loss, unused_1, unused_2 }
+    let [radius, hold, slow, air, sphere, loss, ridge, ahead] = args.u32s();
+    GlassSizeRow { radius, hold, slow, air, sphere, loss, ridge, ahead }
 }
 
 /// The words of a blade that turns somewhere about the pane.
@@ -96,7 +100,7 @@ fn blade_words(random: [u32; 4]) -> Vec<u32> {
     let turn = (random[2] % 3) as i32 - 1;
     let mut words = [points(angle), points(turned)].concat();
     words.extend([within(a, 8000), within(b, 8000), c % 4000, 4000 + d % 4000]);
-    words.extend([turn as u32, random[3] % 257, 0, 0]);
+    words.extend([turn as u32, random[3] % 257, a % 400_000, 0]);
     words
 }
 
@@ -105,20 +109,20 @@ fn blade(args: &mut Args<'_>) -> GlassBlade {
     let after = ivec2(args).to_array();
     let pivot = ivec2(args).to_array();
     let reach = ivec2(args).to_array();
-    let [turn, leaves, unused_1, unused_2] = args.u32s();
-    GlassBlade { before, after, pivot, reach, turn: turn as i32, leaves, unused_1, unused_2 }
+    let [turn, leaves, film, unused] = args.u32s();
+    GlassBlade { before, after, pivot, reach, turn: turn as i32, leaves, film, unused }
 }
 
 /// The words of a frame of 8 to 4103 cells along each edge; limits of the rain that fall.
 fn frame_words(random: [u32; 4]) -> Vec<u32> {
     let mut words = vec![8 + random[0] % 4096, 8 + random[1] % 4096];
-    words.extend([0; 18]);
+    words.extend([0; 22]);
     words.extend((0..8).map(|k| random[2] >> (3 * k)));
     words
 }
 
 fn frame(args: &mut Args<'_>) -> GlassFrame {
-    let words: [u32; 28] = args.u32s();
+    let words: [u32; 32] = args.u32s();
     let (mut frame, [.., a, b, c, d, e, f, g, h]) = (GlassFrame::default(), words);
     frame.size = [words[0], words[1]];
     (frame.rain_few, frame.rain_many) = ([a, b, c, d], [e, f, g, h]);
@@ -153,7 +157,7 @@ fn sizes() -> Vec<FunctionCase> {
         ),
         FunctionCase::new("glass_size_row", m, &[row_of, row_of, Below(257)], INTEGERS, |a| {
             let r = glass_size_row(row(a), row(a), a.u32());
-            vec![r.radius, r.hold, r.slow, r.air, r.sphere, r.loss, r.unused_1, r.unused_2]
+            vec![r.radius, r.hold, r.slow, r.air, r.sphere, r.loss, r.ridge, r.ahead]
         }),
     ]
 }
@@ -227,8 +231,18 @@ fn positions() -> Vec<FunctionCase> {
         FunctionCase::new("glass_blade_sweeps", &shaders::BLADE, &[blade_of, Made(cell)], INTEGERS, |a| {
             glass_blade_sweeps(&blade(a), ivec2(a)).words()
         }),
-        FunctionCase::new("glass_blade_push", &shaders::BLADE, &[blade_of, Made(cell)], INTEGERS, |a| {
-            words(glass_blade_push(&blade(a), ivec2(a)))
+        FunctionCase::new(
+            "glass_blade_push",
+            &shaders::BLADE,
+            &[blade_of, Made(cell), Made(|r| vec![within(r[0], 4)])],
+            INTEGERS,
+            |a| words(glass_blade_push(&blade(a), ivec2(a), a.u32() as i32)),
+        ),
+        FunctionCase::new("glass_blade_ahead", &shaders::BLADE, &[blade_of], INTEGERS, |a| {
+            words(glass_blade_ahead(&blade(a)))
+        }),
+        FunctionCase::new("glass_blade_moved", &shaders::BLADE, &[blade_of, Made(cell)], INTEGERS, |a| {
+            vec![glass_blade_moved(&blade(a), ivec2(a)) as u32]
         }),
         FunctionCase::new("glass_frame_index", &shaders::FRAME, &[frame_of, Made(cell)], INTEGERS, |a| {
             glass_frame_index(&frame(a), ivec2(a)).words()
@@ -241,6 +255,37 @@ fn positions() -> Vec<FunctionCase> {
         }),
         FunctionCase::new("glass_frame_landing", &shaders::FRAME, &[frame_of, AnyWord], INTEGERS, |a| {
             glass_frame_landing(&frame(a), a.u32()).words()
+        }),
+    ]
+}
+
+/// A direction of length 16384.
+fn direction(random: [u32; 4]) -> Vec<u32> {
+    use downpour_math::ops::f64 as ops;
+    let angle = f64::from(random[0]) * 1.0e-9;
+    [ops::cos(angle), ops::sin(angle)].map(|c| (16384.0 * c).round() as i32 as u32).to_vec()
+}
+
+fn ridges() -> Vec<FunctionCase> {
+    let m = &shaders::RIDGE;
+    let ahead = Made(direction);
+    // Progress of drops of either sign, and the words of ridges.
+    let progress = Made(|r| {
+        let small = within(r[0], 40_000);
+        vec![if r[1] & 1 == 0 { small } else { shaders::GLASS_RIDGE | (r[0] & 65_535) }]
+    });
+    let down = Made(|r| vec![within(r[0], 16_384)]);
+    vec![
+        FunctionCase::new("glass_ridge_is", m, &[progress], INTEGERS, |a| glass_ridge_is(a.u32()).words()),
+        FunctionCase::new("glass_ridge_center", m, &[Made(cell), ahead, Below(16_384)], INTEGERS, |a| {
+            words(glass_ridge_center(ivec2(a), ivec2(a), a.u32()))
+        }),
+        FunctionCase::new("glass_ridge_flow", m, &[Made(mass), down, Below(8192)], INTEGERS, |a| {
+            glass_ridge_flow(a.u32(), a.u32() as i32, a.u32()).words()
+        }),
+        FunctionCase::new("glass_ridge_key", m, &[ahead], INTEGERS, |a| glass_ridge_key(ivec2(a)).words()),
+        FunctionCase::new("glass_ridge_ahead", m, &[AnyWord], INTEGERS, |a| {
+            words(glass_ridge_ahead(a.u32()))
         }),
     ]
 }
@@ -277,7 +322,7 @@ fn heights() -> Vec<FunctionCase> {
 
 /// The cases.
 pub(super) fn functions() -> Vec<FunctionCase> {
-    [sizes(), motions(), positions(), heights()].into_iter().flatten().collect()
+    [sizes(), motions(), positions(), ridges(), heights()].into_iter().flatten().collect()
 }
 
 /// A small windshield with everything: rain, air, drying, obstacles, a wiper with a worn band.
@@ -288,6 +333,7 @@ fn everything() -> GlassOptions {
         inner_m: 0.004,
         outer_m: 0.025,
         motion: GlassWiperMotion::Sweep { from_rad: 0.1, to_rad: 2.9, period_s: 1.5 },
+        film_m: 1.0e-6,
         worn: vec![GlassWornBand { from_m: 0.012, to_m: 0.015, leaves: 0.5 }],
     };
     GlassOptions {

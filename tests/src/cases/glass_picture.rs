@@ -5,7 +5,8 @@ use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_render::glass::blade::{glass_picture_blade_at, glass_picture_blade_part};
 use downpour_render::glass::light::{glass_picture_light_lobe, glass_picture_light_seen};
 use downpour_render::glass::water::{
-    glass_picture_water_cap, glass_picture_water_leave, glass_picture_water_normal, glass_picture_water_top,
+    glass_picture_water_away, glass_picture_water_cap, glass_picture_water_leave, glass_picture_water_normal,
+    glass_picture_water_top,
 };
 use downpour_render::glass::{
     GlassPicture, GlassPictureBlade, GlassPictureDrop, GlassPictureLight, WetPane, glass_picture_spline,
@@ -43,6 +44,8 @@ fn drop(random: [u32; 4]) -> Vec<u32> {
     let (x, y) = (e - 0.5, f - 0.5 + 1.0e-3);
     let length = (x * x + y * y).sqrt();
     let along = [x / length, y / length];
+    // Every other one is a piece of a ridge.
+    let axis = if random[3] & 1 == 0 { [0.0; 2] } else { along.map(|c| 0.9e-3 * c) };
     let lobe = |u: f32| 0.3 * u - 0.15;
     [
         0.01,
@@ -55,8 +58,8 @@ fn drop(random: [u32; 4]) -> Vec<u32> {
         0.6 * d,
         -along[1],
         along[0],
-        0.0,
-        0.0,
+        axis[0],
+        axis[1],
         lobe(g),
         lobe(h),
         lobe(c),
@@ -114,6 +117,13 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &[Made(drop), position[0], position[1]],
             CAP.with_outliers(2.0e-3),
             |a| glass_picture_water_cap(&read(a), Vec2::from(a.f32s())).to_array().words(),
+        ),
+        FunctionCase::new(
+            "glass_picture_water_away",
+            &WATER,
+            &[Made(drop), position[0], position[1]],
+            Tol::relative(1.0e-5, 1.0e-8, "a quotient (2.5 ulp) of sums of products of differences"),
+            |a| glass_picture_water_away(&read(a), Vec2::from(a.f32s())).to_array().words(),
         ),
         FunctionCase::new(
             "glass_picture_water_top",

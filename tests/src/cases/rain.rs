@@ -12,7 +12,9 @@ use downpour_render::rain::drops_mask::drops_mask_right;
 use downpour_render::rain::light::{DropLightForm, DropLightOptions};
 use downpour_render::rain::medium::fog::medium_fog_depth;
 use downpour_render::rain::streak::streak_weight;
-use downpour_render::rain::streak_cell::{streak_cell_index, streak_cell_position};
+use downpour_render::rain::streak_cell::{
+    streak_cell_index, streak_cell_position, streak_cell_slope, streak_cell_weight,
+};
 use downpour_render::rain::{
     DropMasks, EnvironmentMap, Exposure, EyeMotion, MediumOptions, PanePlane, Rain, RainMedium, RainOptions,
     RefractionForm, StreakColor, StreakProfiles, StreakSamples, TemporalResponse,
@@ -382,6 +384,12 @@ fn cells(random: [u32; 4]) -> Vec<u32> {
     vec![1 + random[0] % 24]
 }
 
+/// A cell, and the number of cells, from 12 to 96.
+fn cell(random: [u32; 4]) -> Vec<u32> {
+    let count = 12 + random[0] % 85;
+    vec![random[1] % count, count]
+}
+
 /// Weights of the light at the beginning and at the end of a way, 0 to 2.
 fn weights(random: [u32; 4]) -> Vec<u32> {
     random[..2].iter().map(|&word| (2.0 * rng_unit(word)).to_bits()).collect()
@@ -438,6 +446,20 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &[Uniform(-1.5, 1.5), Made(cells)],
             Tol::absolute(1.2e-2, "arc sine (4096 ulp) of numbers up to 1, times up to 24 / pi"),
             |a| streak_cell_index(a.f32(), a.u32()).words(),
+        ),
+        FunctionCase::new(
+            "streak_cell_slope",
+            &STREAK_CELL,
+            &[Uniform(0.0, 24.0), Made(cells)],
+            Tol::absolute(6.0e-4, "cosine (2^-11) of numbers up to pi / 2"),
+            |a| streak_cell_slope(a.f32(), a.u32()).words(),
+        ),
+        FunctionCase::new(
+            "streak_cell_weight",
+            &STREAK_CELL,
+            &[Made(cell)],
+            Tol::absolute(1.2e-3, "the square of a cosine (2^-11)"),
+            |a| streak_cell_weight(a.u32(), a.u32()).words(),
         ),
     ]
 }

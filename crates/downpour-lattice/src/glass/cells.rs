@@ -117,7 +117,7 @@ impl Cells {
             // Neighboring cells are then processed together, which helps the caches.
             come.sort_unstable();
         }
-        self.settle(come, counters);
+        self.settle(come, tick.frame.ridge_fresh, counters);
     }
 
     fn land(&self, tick: &Tick<'_>, counters: &Counters) -> Vec<u32> {
@@ -134,7 +134,7 @@ impl Cells {
         blocks.fold(Vec::new, land).reduce(Vec::new, joined)
     }
 
-    fn settle(&mut self, come: Vec<u32>, counters: &Counters) {
+    fn settle(&mut self, come: Vec<u32>, fresh: u32, counters: &Counters) {
         for &index in &self.drops {
             self.mass[index as usize] = 0;
             self.motion[index as usize] = [0; 2];
@@ -143,7 +143,7 @@ impl Cells {
             let k = index as usize;
             let (winner, mass) =
                 (std::mem::take(self.arrival[k].get_mut()), std::mem::take(self.next[k].get_mut()));
-            (self.mass[k], self.motion[k]) = settle_cell(mass, winner, &self.decided, counters);
+            (self.mass[k], self.motion[k]) = settle_cell(mass, winner, fresh, &self.decided, counters);
         }
         self.drops = come;
         self.keys.par_chunks_mut(1 << 16).for_each(|keys| {

@@ -106,6 +106,21 @@ impl GlassContact {
         radius * radius / (sin * sin) * (theta - sin * cos)
     }
 
+    /// Half of the width of a ridge with this cross-section in m^2, m: a segment of a circle at the mean contact angle.
+    #[must_use]
+    pub fn ridge(&self, area: f64) -> f64 {
+        (area / self.frontal_area(1.0)).sqrt()
+    }
+
+    /// Mean speed of the water down a ridge with this cross-section in m^2, m/s, from its weight in N/m^3 along the ridge and its
+    /// viscosity in Pa s: lubrication flow under a parabola of height h, `integral of h^3 / (3 integral of h)`, which is 8/35 of
+    /// `weight h^2 / mu`.
+    #[must_use]
+    pub fn ridge_speed(&self, area: f64, weight: f64, mu: f64) -> f64 {
+        let height = self.ridge(area) * ops::tan(0.5 * self.mean_rad());
+        8.0 / 35.0 * weight * height * height / mu
+    }
+
     /// Retention force on a drop of radius `radius`, N, with the surface tension `sigma` in N/m.
     #[must_use]
     pub fn hold(&self, radius: f64, sigma: f64) -> f64 {

@@ -3,8 +3,8 @@
 
 use downpour_math::rng::rng_draw;
 use downpour_shaders::lattice::glass::{
-    GLASS_CELL, GLASS_DIAGONAL, GLASS_INDEX, GLASS_MAX_MASS, GLASS_OBSTACLE, GLASS_OUT, GLASS_TAKEN,
-    GLASS_WATER_PULL,
+    GLASS_CELL, GLASS_DIAGONAL, GLASS_INDEX, GLASS_MAX_MASS, GLASS_OBSTACLE, GLASS_OUT, GLASS_RIDGE,
+    GLASS_RIDGE_CLASS, GLASS_RIDGE_MIN, GLASS_STAYS, GLASS_TAKEN, GLASS_WATER_PULL,
 };
 use glam::{IVec2, UVec2, UVec3};
 
@@ -15,7 +15,8 @@ use super::motion::{
     glass_motion_slide, glass_motion_turn, glass_motion_unit, glass_motion_unpack, glass_motion_weight,
     glass_motion_wetness,
 };
-use super::size::{glass_size_floor, glass_size_key};
+use super::ridge::{glass_ridge_center, glass_ridge_flow, glass_ridge_is};
+use super::size::{GlassSizeRow, glass_size_floor, glass_size_key};
 
 /// Key of the largest drop that wets a cell; 0 if none does.
 fn glass_decide_key(cells: &Cells, tick: &Tick<'_>, cell: IVec2) -> u32 {
@@ -125,20 +126,96 @@ fn glass_decide_hold(
     if moves { (eased * tick.frame.kinetic) >> 8 } else { eased }
 }
 
+/// True if a drop can merge into the drop of a key without exceeding the maximum mass of a cell.
+fn glass_decide_fits(cells: &Cells, key: u32, mass: u32) -> bool {
+    // Of a ridge the key does not tell the mass.
+    if key >> 24 == GLASS_RIDGE_CLASS {
+        return cells.mass[(key & GLASS_INDEX) as usize] + mass <= GLASS_MAX_MASS;
+    }
+    glass_size_floor((key >> 24) + 1) + mass <= GLASS_MAX_MASS
+}
+
+/// Octant of the next cell of a ridge on one side: the given one or a neighboring one; 8 if it ends there.
+fn glass_decide_beside(cells: &Cells, tick: &Tick<'_>, cell: IVec2, octant: u32) -> u32 {
+    for turn in [0, 1, 7] {
+        let to = cell + glass_motion_offset(octant + turn);
+        if glass_frame_holds(tick.frame, to) {
+            let index = glass_frame_index(tick.frame, to) as usize;
+            if cells.mass[index] != 0 && glass_ridge_is(cells.motion[index][1]) {
+                return (octant + turn) & 7;
+            }
+        }
+    }
+    8
+}
+
+/// Target of a cell of a ridge, and its motion.
+fn glass_decide_ridge(
+    cells: &Cells,
+    tick: &Tick<'_>,
+    cell: IVec2,
+    mass: u32,
+    row: &GlassSizeRow,
+    motion: Motion,
+) -> (u32, Motion) {
+    let frame = tick.frame;
+    let ahead = glass_motion_unpack(motion[0]);
+    let fresh = motion[1] & 65535;
+    let octant = glass_motion_octant(ahead);
+    let (left, right) = (
+        glass_decide_beside(cells, tick, cell, octant + 6),
+        glass_decide_beside(cells, tick, cell, octant + 2),
+    );
+    // The right side is the direction ahead turned from +x toward +y, whose y is the x of the direction.
+    let down = ahead.x;
+    if fresh == 0 {
+        let index = glass_frame_index(frame, cell);
+        let own = glass_size_key(mass, index);
+        let center = glass_ridge_center(cell, ahead, row.ahead);
+        let touched = glass_decide_touch(cells, tick, center, row.ridge);
+        let into = touched & GLASS_INDEX;
+        if touched > own
+            && into != index
+            && !glass_ridge_is(cells.motion[into as usize][1])
+            && glass_decide_fits(cells, touched, mass)
+        {
+            return (into | GLASS_TAKEN, [0; 2]);
+        }
+        let lower = if down > 0 { right } else { left };
+        let fall = if lower == 8 { GLASS_CELL as u32 } else { ahead.y.unsigned_abs() };
+        let sags = mass * (fall >> 6) > frame.ridge_hold << 8;
+        if sags || row.ridge < GLASS_RIDGE_MIN || (left == 8 && right == 8) {
+            let stands = glass_frame_holds(frame, center) && glass_decide_open(cells, tick, center);
+            return (if stands { glass_frame_index(frame, center) } else { index }, [0; 2]);
+        }
+    }
+    let mut goes = GLASS_STAYS | (left << 16) | (right << 20);
+    if left != 8 {
+        goes |= glass_ridge_flow(mass, -down, frame.ridge_drain);
+    }
+    if right != 8 {
+        goes |= glass_ridge_flow(mass, down, frame.ridge_drain) << 8;
+    }
+    (goes, [motion[0], GLASS_RIDGE | fresh.saturating_sub(1)])
+}
+
 /// Target of the drop of a cell, and its motion.
 pub(super) fn glass_decide_drop(cells: &Cells, tick: &Tick<'_>, cell: IVec2) -> (u32, Motion) {
     let frame = tick.frame;
     let index = glass_frame_index(frame, cell);
     let mass = cells.mass[index as usize];
     let row = tick.table.row(mass);
+    let [packed, progress] = cells.motion[index as usize];
+    if glass_ridge_is(progress) {
+        return glass_decide_ridge(cells, tick, cell, mass, &row, [packed, progress]);
+    }
     let own = glass_size_key(mass, index);
     let touched = glass_decide_touch(cells, tick, cell, row.radius);
     // A drop that could exceed the maximum mass of a cell stays separate.
-    if touched > own && glass_size_floor((touched >> 24) + 1) + mass <= GLASS_MAX_MASS {
+    if touched > own && glass_decide_fits(cells, touched, mass) {
         return ((touched & GLASS_INDEX) | GLASS_TAKEN, [0; 2]);
     }
     let reach = (row.radius >> 8) as i32 + 1;
-    let [packed, progress] = cells.motion[index as usize];
     let before = glass_motion_unpack(packed);
     let drive = IVec2::from(frame.gravity) + IVec2::from(frame.air) * row.air as i32 / GLASS_CELL;
     let hold = glass_decide_hold(cells, tick, cell, row.hold, drive, reach, before != IVec2::ZERO);

@@ -36,8 +36,17 @@ pub struct GlassFrame {
     pub affinity_pull: u32,
     /// Attraction by wetness, in sixteenths.
     pub wet_pull: u32,
+    /// Fraction of its water that flows down a vertical ridge by a cell in one tick, in units of 1/262144 for each unit
+    /// of mass.
+    pub ridge_drain: u32,
+    /// Mass of a cell of a level ridge from which on it sags.
+    pub ridge_hold: u32,
+    /// Ticks for which a ridge takes all drops that it touches after a blade has pushed it.
+    pub ridge_fresh: u32,
     /// Padding, 0.
-    pub unused: u32,
+    pub unused_1: u32,
+    /// Padding, 0.
+    pub unused_2: u32,
     /// Probability that at least 1, 2, 3, 4 drops land in a block in one tick, in units of 2^-32.
     pub rain_few: [u32; 4],
     /// The same for 5, 6, 7, 8.

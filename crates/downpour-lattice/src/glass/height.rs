@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use super::cells::Cells;
 use super::frame::{GlassFrame, glass_frame_cell, glass_frame_holds, glass_frame_index};
 use super::motion::{glass_motion_length, glass_motion_root, glass_motion_unpack};
+use super::ridge::{glass_ridge_center, glass_ridge_is};
 use super::size::GlassTable;
 
 /// Stretch of a drop behind its center relative to the front, in units of 1/256.
@@ -47,7 +48,7 @@ pub fn glass_height_cap(radius: u32, sphere: u32, squared: u32) -> u32 {
     glass_motion_root(sphere * sphere - squared) - glass_motion_root(sphere * sphere - radius * radius)
 }
 
-/// Adds the cap of the drop of a cell.
+/// Adds the cap of the drop of a cell. Of a ridge it is a cap as wide, which those of its neighbors make a ridge.
 fn glass_height_drop(
     cells: &Cells,
     frame: &GlassFrame,
@@ -57,12 +58,19 @@ fn glass_height_drop(
 ) {
     let index = glass_frame_index(frame, cell) as usize;
     let row = table.row(cells.mass[index]);
-    let v = glass_motion_unpack(cells.motion[index][0]);
+    let mut v = glass_motion_unpack(cells.motion[index][0]);
+    let (mut center, mut radius, mut sphere) = (cell, row.radius, row.sphere);
+    if glass_ridge_is(cells.motion[index][1]) {
+        center = glass_ridge_center(cell, v, row.ahead);
+        radius = row.ridge;
+        sphere = row.sphere * row.ridge / row.radius.max(1);
+        v = IVec2::ZERO;
+    }
     // The rim may be 15 % beyond the disk.
-    let reach = (row.radius * glass_height_stretch(glass_motion_length(v)) / 56000) as i32 + 1;
+    let reach = (radius * glass_height_stretch(glass_motion_length(v)) / 56000) as i32 + 1;
     for y in -reach..=reach {
         for x in -reach..=reach {
-            let to = cell + IVec2::new(x, y);
+            let to = center + IVec2::new(x, y);
             if !glass_frame_holds(frame, to) {
                 continue;
             }
@@ -70,7 +78,7 @@ fn glass_height_drop(
             // The rim follows the affinity of the glass: inwards where it repels, outwards where it attracts.
             let rim = 320 - (cells.surface[at] & 255) / 2;
             let squared = (glass_height_squared(IVec2::new(x, y), v) >> 8) * rim;
-            let height = glass_height_cap(row.radius, row.sphere, squared);
+            let height = glass_height_cap(radius, sphere, squared);
             if height != 0 {
                 heights[at].fetch_max(height, Ordering::Relaxed);
             }

@@ -2,7 +2,7 @@
 
 use downpour_math::in_range;
 use downpour_shaders::lattice::glass::{GLASS_MAX_MASS, GLASS_OBSTACLE};
-use glam::Vec3;
+use glam::{IVec2, Vec3};
 
 use super::cells::{Cells, Tick, load};
 use super::error::GlassError;
@@ -10,6 +10,7 @@ use super::frame::GlassFrame;
 use super::motion::{glass_motion_unpack, glass_motion_wetness};
 use super::options::{GlassAir, GlassOptions, GlassRain};
 use super::plan::Plan;
+use super::ridge::glass_ridge_is;
 use super::state::GlassState;
 use super::totals::{Counters, GlassTotals};
 use super::{height, normal, smooth, surface};
@@ -137,7 +138,11 @@ impl Glass {
     #[must_use]
     pub fn velocities(&self) -> Vec<[f32; 2]> {
         let unit = (self.options().cell_m / self.tick_s() / 16384.0) as f32;
-        let of = |m: &[u32; 2]| (glass_motion_unpack(m[0]).as_vec2() * unit).to_array();
+        let of = |m: &[u32; 2]| {
+            // The word of a ridge is the direction of its blade.
+            let v = if glass_ridge_is(m[1]) { IVec2::ZERO } else { glass_motion_unpack(m[0]) };
+            (v.as_vec2() * unit).to_array()
+        };
         self.cells.motion.iter().map(of).collect()
     }
 

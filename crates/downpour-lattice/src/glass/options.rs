@@ -88,11 +88,14 @@ pub struct GlassWetting {
     pub ease: f64,
     /// Attraction of drops by wetness, 0 to 4: with 1, wet glass is twice as likely as dry.
     pub pull: f64,
+    /// Mean time in which the film behind a blade dries, s: 0.05 to 3600; infinite for never. It breaks into droplets finer than a
+    /// unit of mass: cells of one or two units stand for several of them.
+    pub film_life_s: f64,
 }
 
 impl Default for GlassWetting {
     fn default() -> Self {
-        Self { life_s: 20.0, ease: 0.35, pull: 1.5 }
+        Self { life_s: 20.0, ease: 0.35, pull: 1.5, film_life_s: 0.7 }
     }
 }
 
@@ -208,6 +211,9 @@ impl GlassOptions {
         in_range("life of wetness", self.wetting.life_s, "s", &(0.1..=3600.0), 1.0, "0.1 to 3600")?;
         in_range("ease of wet glass", self.wetting.ease, "", &(0.0..=1.0), 1.0, "0 to 1")?;
         in_range("pull of wet glass", self.wetting.pull, "", &(0.0..=4.0), 1.0, "0 to 4")?;
+        if self.wetting.film_life_s != f64::INFINITY {
+            in_range("life of a film", self.wetting.film_life_s, "s", &(0.05..=3600.0), 1.0, "0.05 to 3600")?;
+        }
         in_range("pull of affinity", self.affinity_pull, "", &(0.0..=4.0), 1.0, "0 to 4")?;
         in_range("evaporation", self.evaporation_mm_h, "mm/h", &(0.0..=100.0), 1.0, "0 to 100")?;
         in_range("speed limit", self.speed_limit_m_s, "m/s", &(0.01..=5.0), 1.0, "0.01 to 5")?;

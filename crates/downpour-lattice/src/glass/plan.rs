@@ -7,7 +7,7 @@ use downpour_drop::air::STANDARD_GRAVITY;
 use downpour_drop::water;
 use downpour_math::ops::f64 as ops;
 use downpour_math::rng::seed_words;
-use downpour_shaders::lattice::glass::{GLASS_CELL, GLASS_CLASSES, GLASS_LANDING_QUADS};
+use downpour_shaders::lattice::glass::{GLASS_CELL, GLASS_CLASSES, GLASS_LANDING_QUADS, GLASS_MAX_MASS};
 
 use super::blade::GlassBlade;
 use super::error::GlassError;
@@ -16,9 +16,16 @@ use super::lattice::UNIT_M3;
 use super::options::{GlassAir, GlassOptions, GlassRain};
 use super::rain::{BLOCK, Landing, MAX_PER_BLOCK};
 use super::size::{GlassSizeRow, GlassTable, glass_size_floor};
+use super::wiper::GlassWiper;
 
 /// Clock ticks per second.
 const CLOCK_HZ: f64 = 4096.0;
+
+/// Units of mass of a cell up to which it stands for the droplets of a film.
+const FILM_UNITS: u32 = 2;
+
+/// Time for which a ridge takes the drops that it touches after a blade has pushed it, s.
+const FRESH_S: f64 = 0.15;
 
 /// Maximum step, s.
 const MAX_STEP_S: f64 = 60.0;
@@ -52,7 +59,7 @@ impl Plan {
         let tick_s = tick(options, &landing);
         let table = table(options, &landing, tick_s)?;
         Ok(Self {
-            frame: frame(options, &landing, tick_s),
+            frame: frame(options, &landing, tick_s)?,
             options: options.clone(),
             tick_s,
             table,
@@ -76,7 +83,7 @@ impl Plan {
             "0 to 0.5: make the pane with its heaviest rain, which sets the tick",
         )?;
         self.table = table(&options, &landing, self.tick_s)?;
-        let new = frame(&options, &landing, self.tick_s);
+        let new = frame(&options, &landing, self.tick_s)?;
         let (first_step, first_clock) = (self.frame.first_step, self.frame.first_clock);
         self.frame = GlassFrame { first_step, first_clock, ..new };
         self.options = options;
@@ -138,12 +145,12 @@ fn tick(options: &GlassOptions, landing: &Landing) -> f64 {
     let fall = (0.48 * cell / STANDARD_GRAVITY).sqrt();
     let edge = BLOCK * cell;
     let rain = MAX_PER_BLOCK / (landing.number * edge * edge);
-    let wiper = |w: &super::wiper::GlassWiper| 8.0 * cell / (w.max_speed() * w.outer_m);
+    let wiper = |w: &GlassWiper| 8.0 * cell / (w.max_speed() * w.outer_m);
     let limits = [cell / options.speed_limit_m_s, fall, rain];
     limits.into_iter().chain(options.wipers.iter().map(wiper)).fold(f64::INFINITY, f64::min)
 }
 
-fn frame(options: &GlassOptions, landing: &Landing, tick_s: f64) -> GlassFrame {
+fn frame(options: &GlassOptions, landing: &Landing, tick_s: f64) -> Result<GlassFrame, GlassError> {
     let velocity = options.cell_m / tick_s / f64::from(GLASS_CELL);
     let gravity = STANDARD_GRAVITY * ops::sin(options.tilt_rad) * tick_s / velocity;
     let unit = |c: f64| (c * f64::from(GLASS_CELL)).round() as i32;
@@ -152,13 +159,20 @@ fn frame(options: &GlassOptions, landing: &Landing, tick_s: f64) -> GlassFrame {
     let sixteenths = |x: f64| (x * 16.0).round() as u32;
     let [a, b, c, d, e, f, g, h] = landing.limits(options.cell_m, tick_s);
     let direction = options.air.direction_rad;
-    GlassFrame {
+    let (density, sigma, mu) = water_at(options.temperature_c)?;
+    let weight = density * STANDARD_GRAVITY * ops::sin(options.tilt_rad);
+    // A ridge with a unit of mass in each cell of its length.
+    let (area, cell) = (UNIT_M3 / options.cell_m, options.cell_m);
+    let drain = options.contact.ridge_speed(area, weight, mu) * tick_s / cell;
+    // Furmidge's retention of a length of the ridge, whose contact lines are as long as that.
+    let sags = options.contact.hold(0.5 * cell, sigma) / weight.max(1.0e-9) / UNIT_M3;
+    Ok(GlassFrame {
         size: options.size,
         seed: seed_words(options.seed),
         first_step: 0,
         first_clock: 1,
         clock_step: (tick_s * CLOCK_HZ).round().max(1.0) as u32,
-        blades: options.wipers.iter().map(super::wiper::GlassWiper::parts).sum::<usize>() as u32,
+        blades: options.wipers.iter().map(GlassWiper::parts).sum::<usize>() as u32,
         gravity: [0, gravity.round() as i32],
         air: [unit(ops::cos(direction)), unit(-ops::sin(direction))],
         kinetic: (256.0 * options.contact.kinetic).round() as u32,
@@ -168,21 +182,30 @@ fn frame(options: &GlassOptions, landing: &Landing, tick_s: f64) -> GlassFrame {
         wet_ease: (256.0 * options.wetting.ease).round() as u32,
         affinity_pull: sixteenths(options.affinity_pull),
         wet_pull: sixteenths(options.wetting.pull),
-        unused: 0,
+        ridge_drain: (drain * 262_144.0).round().min(8191.0) as u32,
+        ridge_hold: sags.min(f64::from(GLASS_MAX_MASS)) as u32,
+        ridge_fresh: (FRESH_S / tick_s).ceil().clamp(1.0, 65535.0) as u32,
+        unused_1: 0,
+        unused_2: 0,
         rain_few: [a, b, c, d],
         rain_many: [e, f, g, h],
-    }
+    })
+}
+
+/// Density, surface tension and viscosity of water at a temperature, SI.
+fn water_at(celsius: f64) -> Result<(f64, f64, f64), GlassError> {
+    Ok((water::density(celsius)?, water::surface_tension(celsius)?, water::viscosity(celsius)?))
 }
 
 fn table(options: &GlassOptions, landing: &Landing, tick_s: f64) -> Result<Box<GlassTable>, GlassError> {
     let contact = &options.contact;
-    let density = water::density(options.temperature_c)?;
-    let sigma = water::surface_tension(options.temperature_c)?;
-    let mu = water::viscosity(options.temperature_c)?;
+    let (density, sigma, mu) = water_at(options.temperature_c)?;
     let velocity = options.cell_m / tick_s / f64::from(GLASS_CELL);
     let wind =
         0.5 * options.rain.air.density() * options.air.speed_m_s * options.air.speed_m_s * options.air.drag;
     let dries = options.evaporation_mm_h * 1.0e-3 / 3600.0 * tick_s / UNIT_M3;
+    let fades = if options.wipers.is_empty() { 0.0 } else { 65536.0 * tick_s / options.wetting.film_life_s };
+    let film = |class: u32| if class <= FILM_UNITS { fades * f64::from(class) } else { 0.0 };
     let row = |class: u32| {
         let volume = f64::from(glass_size_floor(class).max(1)) * UNIT_M3;
         let mass = volume * density;
@@ -196,9 +219,9 @@ fn table(options: &GlassOptions, landing: &Landing, tick_s: f64) -> Result<Box<G
             slow: (f64::from(GLASS_CELL) / (1.0 + contact.drag(radius, mu) / mass * tick_s)).round() as u32,
             air: push(wind * contact.frontal_area(radius), 16383.0),
             sphere: cells(contact.sphere(radius), 45_000.0).max(cells(radius, 8192.0)),
-            loss: (dries * PI * radius * radius * 65536.0).round().min(4_000_000.0) as u32,
-            unused_1: 0,
-            unused_2: 0,
+            loss: (dries * PI * radius * radius * 65536.0).max(film(class)).round().min(4_000_000.0) as u32,
+            ridge: cells(contact.ridge(volume / options.cell_m), 8192.0),
+            ahead: cells(GlassWiper::LIP_M + contact.ridge(volume / options.cell_m), 16383.0),
         }
     };
     let mut table = Box::new(GlassTable {

@@ -2,10 +2,13 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use downpour_shaders::lattice::glass::{GLASS_INDEX, GLASS_MAX_MASS};
+use downpour_shaders::lattice::glass::{
+    GLASS_INDEX, GLASS_MAX_MASS, GLASS_RIDGE, GLASS_RIDGE_CLASS, GLASS_RIDGE_PUSHED,
+};
 
 use super::cells::Motion;
 use super::motion::{glass_motion_merged, glass_motion_pack, glass_motion_unpack};
+use super::ridge::glass_ridge_ahead;
 use super::totals::Counters;
 
 /// Removes the mass above the maximum from the pane.
@@ -18,12 +21,18 @@ fn glass_settle_spill(mass: u32, counters: &Counters) -> u32 {
     GLASS_MAX_MASS
 }
 
-/// Motion of the drop of a cell: that of the largest drop that moved to it by itself.
-fn glass_settle_motion_of(mass: u32, winner: u32, decided: &[AtomicU64]) -> Motion {
+/// Motion of the drop of a cell: that of the largest drop that moved to it by itself. Water that a blade has pushed is a ridge.
+fn glass_settle_motion_of(mass: u32, winner: u32, fresh: u32, decided: &[AtomicU64]) -> Motion {
     if mass == 0 || winner == 0 {
         return [0; 2];
     }
+    if winner >> 24 == GLASS_RIDGE_PUSHED {
+        return [glass_motion_pack(glass_ridge_ahead(winner)), GLASS_RIDGE | fresh];
+    }
     let motion = decided[(winner & GLASS_INDEX) as usize].load(Ordering::Relaxed);
+    if winner >> 24 == GLASS_RIDGE_CLASS {
+        return [motion as u32, (motion >> 32) as u32];
+    }
     let v = glass_motion_merged(glass_motion_unpack(motion as u32), winner >> 24, mass);
     [glass_motion_pack(v), (motion >> 32) as u32]
 }
@@ -32,9 +41,10 @@ fn glass_settle_motion_of(mass: u32, winner: u32, decided: &[AtomicU64]) -> Moti
 pub(super) fn settle_cell(
     come: u32,
     winner: u32,
+    fresh: u32,
     decided: &[AtomicU64],
     counters: &Counters,
 ) -> (u32, Motion) {
     let mass = glass_settle_spill(come, counters);
-    (mass, glass_settle_motion_of(mass, winner, decided))
+    (mass, glass_settle_motion_of(mass, winner, fresh, decided))
 }

@@ -18,10 +18,10 @@ pub struct GlassSizeRow {
     pub sphere: u32,
     /// Evaporation in one tick, in units of mass / 65536.
     pub loss: u32,
-    /// Padding, 0.
-    pub unused_1: u32,
-    /// Padding, 0.
-    pub unused_2: u32,
+    /// Half-width of a ridge that has this mass in each cell of its length, in cells / 256.
+    pub ridge: u32,
+    /// Distance of the middle of that ridge from its cells, ahead of the blade, in cells / 256.
+    pub ahead: u32,
 }
 
 /// Properties of drops computed by the host, in the layout of `GlassTable` in WGSL.
@@ -104,8 +104,8 @@ pub fn glass_size_row(low: GlassSizeRow, high: GlassSizeRow, fraction: u32) -> G
         air: glass_size_mix(low.air, high.air, fraction),
         sphere: glass_size_mix(low.sphere, high.sphere, fraction),
         loss: glass_size_mix(low.loss, high.loss, fraction),
-        unused_1: 0,
-        unused_2: 0,
+        ridge: glass_size_mix(low.ridge, high.ridge, fraction),
+        ahead: glass_size_mix(low.ahead, high.ahead, fraction),
     }
 }
 

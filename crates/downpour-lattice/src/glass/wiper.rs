@@ -7,6 +7,7 @@ use downpour_math::ops::f64 as ops;
 
 use super::blade::{GlassBlade, glass_blade_side};
 use super::error::GlassError;
+use super::lattice::UNIT_M3;
 use super::options::GlassOptions;
 
 /// Angle of a blade at a time.
@@ -56,6 +57,8 @@ pub struct GlassWiper {
     pub outer_m: f64,
     /// Motion of the blade.
     pub motion: GlassWiperMotion,
+    /// Thickness of the film that the blade leaves, m: 0 to 20e-6.
+    pub film_m: f64,
     /// Worn bands, in order from the pivot, without overlap.
     pub worn: Vec<GlassWornBand>,
 }
@@ -63,6 +66,9 @@ pub struct GlassWiper {
 const MAX_SPEED_RAD_S: f64 = 20.0;
 
 impl GlassWiper {
+    /// Half of the width of a blade's lip, m: the ridge that it pushes begins in front of it.
+    pub const LIP_M: f64 = 3.0e-3;
+
     pub(super) fn check(&self, index: usize, options: &GlassOptions) -> Result<(), GlassError> {
         let [width, height] = options.size.map(|n| f64::from(n) * options.cell_m);
         let [x, y] = self.pivot_m;
@@ -80,6 +86,7 @@ impl GlassWiper {
         {
             return Err(outside);
         }
+        in_range("film behind a blade", self.film_m, "um", &(0.0..=20.0e-6), 1.0e6, "0 to 20")?;
         let mut from = self.inner_m;
         for band in &self.worn {
             in_range(
@@ -185,6 +192,7 @@ impl GlassWiper {
         };
         let (before, after) = (points(from_s), points(to_s));
         let turn = glass_blade_side(before.into(), after.into()).signum();
+        let film = (self.film_m * cell_m * cell_m / UNIT_M3 * 65536.0).round().min(400_000.0) as u32;
         let mut part = |from: f64, to: f64, leaves: f64| {
             blades.push(GlassBlade {
                 before,
@@ -193,8 +201,8 @@ impl GlassWiper {
                 reach: [half(from), half(to)],
                 turn,
                 leaves: (256.0 * leaves).round() as u32,
-                unused_1: 0,
-                unused_2: 0,
+                film,
+                unused: 0,
             });
         };
         let mut from = self.inner_m;

@@ -112,6 +112,7 @@ mod tests {
             inner_m: 0.1,
             outer_m: 0.3,
             motion: GlassWiperMotion::Keys(keys.iter().map(key).collect()),
+            film_m: 0.0,
             worn: Vec::new(),
         }
     }

@@ -8,11 +8,13 @@ use downpour_lattice::glass::height::glass_height_stretch;
 use downpour_lattice::glass::motion::{
     glass_motion_length, glass_motion_octant, glass_motion_offset, glass_motion_unpack,
 };
+use downpour_lattice::glass::ridge::glass_ridge_is;
 use downpour_lattice::glass::{Glass, GlassError, GlassOptions, GlassState};
 use downpour_math::ops::f64 as ops;
 use downpour_math::rng::{rng_draw, rng_unit, seed_words};
 use glam::{DVec2, IVec2};
 
+use super::ridge::ridge_piece;
 use super::water::GlassPictureDrop;
 
 /// Edge of a bin, m.
@@ -69,7 +71,12 @@ pub(super) fn binned(options: &GlassOptions, state: &GlassState, above: u32) -> 
     let cells = state.mass.iter().zip(&state.motion).enumerate();
     let drops: Vec<GlassPictureDrop> = cells
         .filter(|(_, (mass, _))| **mass != 0)
-        .map(|(index, (&mass, motion))| common.drop(index as u32, mass, *motion))
+        .filter_map(|(index, (&mass, motion))| {
+            if glass_ridge_is(motion[1]) {
+                return ridge_piece(options, state, index as u32);
+            }
+            Some(common.drop(index as u32, mass, *motion))
+        })
         .filter_map(|drop| lowered(drop, f64::from(above) * options.cell_m))
         .collect();
     let [columns, rows] = options.size;
@@ -78,7 +85,7 @@ pub(super) fn binned(options: &GlassOptions, state: &GlassState, above: u32) -> 
     let count = (columns * rows) as usize;
     let bin = |at: f64, most: u32| ((at / BIN_M).max(0.0) as u32).min(most - 1);
     let touched = |drop: &GlassPictureDrop| {
-        let reach = f64::from(drop.radius) * 1.5 / f64::from(drop.behind);
+        let reach = f64::from(drop.reach());
         let [x, y] = drop.center.map(f64::from);
         let (left, right) = (bin(x - reach, columns), bin(x + reach, columns));
         let (top, bottom) = (bin(y - reach, rows), bin(y + reach, rows));
@@ -108,7 +115,7 @@ pub(super) fn binned(options: &GlassOptions, state: &GlassState, above: u32) -> 
 /// A drop from a corner that is so many meters lower; `None` if it is all above.
 fn lowered(mut drop: GlassPictureDrop, by: f64) -> Option<GlassPictureDrop> {
     drop.center[1] -= by as f32;
-    (drop.center[1] + 1.5 * drop.radius / drop.behind > 0.0).then_some(drop)
+    (drop.center[1] + drop.reach() > 0.0).then_some(drop)
 }
 
 impl Common<'_> {
@@ -136,7 +143,7 @@ impl Common<'_> {
             behind: behind as f32,
             lean: (LEAN * (strength / held.max(1.0e-12)).min(1.0)) as f32,
             droop: droop.as_vec2().into(),
-            unused: [0.0; 2],
+            axis: [0.0; 2],
             lobes: self.lobes(center, radius, along),
         }
     }

@@ -66,11 +66,13 @@ impl PaneShade {
         let mut finest = vec![Vec2::ZERO; columns * rows];
         let mut sums = [0.0f32; 3];
         for drop in drops.iter().filter(|drop| drop.radius > 0.0) {
-            let area = drop.radius * drop.radius;
+            // Pieces of a ridge overlap: their light goes on in its direction.
+            let is_drop = drop.axis == [0.0; 2];
+            let area = if is_drop { drop.radius * drop.radius } else { 0.0 };
             sums[0] += area;
             sums[1] += area * drop.radius;
             sums[2] += area * drop.sphere / (water - 1.0).max(0.01);
-            cast(&mut finest, [columns, rows], edge, drop, drop.radius >= gathers_m);
+            cast(&mut finest, [columns, rows], edge, drop, is_drop && drop.radius >= gathers_m);
         }
         let area = sums[0].max(1.0e-20);
         let mean = if sums[0] > 0.0 { [sums[1] / area, sums[2] / area] } else { [1.0e-3, 1.0e-2] };
@@ -96,7 +98,7 @@ impl PaneShade {
 /// Adds a drop. Its gathered light is as much as its cover, texel by texel, whatever their edge.
 fn cast(texels: &mut [Vec2], [columns, rows]: [usize; 2], edge: f32, drop: &GlassPictureDrop, gathers: bool) {
     let center = Vec2::from(drop.center);
-    let reach = drop.radius * 1.5 / drop.behind;
+    let reach = drop.reach();
     let range = |at: f32, most: usize| {
         let low = ((at - reach) / edge).floor().max(0.0) as usize;
         low.min(most)..(((at + reach) / edge).ceil().max(0.0) as usize).min(most)

@@ -1,7 +1,8 @@
 //! Water on a pane as smooth surfaces. Twin of `shaders/wgsl/render/glass_picture_water.wgsl`.
 //!
 //! Each drop is a cap of a sphere over its disk, with an outline that is not quite round, drawn out behind if it runs, and
-//! steeper on the side to which its weight pulls it: from the receding angle to the advancing one.
+//! steeper on the side to which its weight pulls it: from the receding angle to the advancing one. Water ahead of a wiper is a ridge:
+//! pieces of a cylinder with round ends, which overlap.
 
 use downpour_shaders::render::glass::GLASS_PICTURE_TURNS;
 use glam::{Vec2, Vec3};
@@ -24,16 +25,33 @@ pub struct GlassPictureDrop {
     pub lean: f32,
     /// Direction of the steeper side, of length 1.
     pub droop: [f32; 2],
-    /// 0.
-    pub unused: [f32; 2],
+    /// Half of the axis of a ridge: the cap is that of the nearest position of the axis. 0: a drop.
+    pub axis: [f32; 2],
     /// Harmonics of the outline: added to the squared distance with the cosine and sine of twice and of three times the angle.
     pub lobes: [f32; 4],
+}
+
+impl GlassPictureDrop {
+    /// Distance from its center beyond which it is nowhere, m.
+    pub(super) fn reach(&self) -> f32 {
+        1.5 * self.radius / self.behind + Vec2::from(self.axis).length()
+    }
+}
+
+/// Vector from the center of a drop, or the nearest position of a ridge's axis, to a position.
+#[must_use]
+pub fn glass_picture_water_away(drop: &GlassPictureDrop, position: Vec2) -> Vec2 {
+    let away = position - Vec2::from(drop.center);
+    let axis = Vec2::from(drop.axis);
+    let squared = axis.x * axis.x + axis.y * axis.y;
+    let fraction = (away.x * axis.x + away.y * axis.y) / squared.max(1.0e-18);
+    away - axis * fraction.clamp(-1.0, 1.0)
 }
 
 /// Height over the glass, and its slopes along x and y. Beyond the outline the height is below 0.
 #[must_use]
 pub fn glass_picture_water_cap(drop: &GlassPictureDrop, position: Vec2) -> Vec3 {
-    let away = position - Vec2::from(drop.center);
+    let away = glass_picture_water_away(drop, position);
     let (along, droop) = (Vec2::from(drop.along), Vec2::from(drop.droop));
     let ahead = away.x * along.x + away.y * along.y;
     let stretch = if ahead > 0.0 { 1.0 } else { drop.behind };
@@ -61,7 +79,9 @@ pub fn glass_picture_water_cap(drop: &GlassPictureDrop, position: Vec2) -> Vec3 
     let down_y = steep * of_y;
     let slope = along * down_x + Vec2::new(-along.y, along.x) * down_y;
     let pulled = drop.lean * r;
-    let fraction = (1.0 + pulled * (away.x * droop.x + away.y * droop.y)).max(0.1);
+    // A ridge grows along its axis.
+    let off = position - Vec2::from(drop.center);
+    let fraction = (1.0 + pulled * (off.x * droop.x + off.y * droop.y)).max(0.1);
     let slope = slope * fraction + droop * (height * pulled);
     Vec3::new(height * fraction, slope.x, slope.y)
 }

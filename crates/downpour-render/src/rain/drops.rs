@@ -5,8 +5,8 @@ use downpour_math::ops;
 use downpour_shaders::render::drop_light::DROP_ATLAS_ROWS;
 use downpour_shaders::render::medium::{MEDIUM_SKY, MEDIUM_SKY_REACH};
 use downpour_shaders::render::rain::{
-    DROPS_ATLAS_TAPS, DROPS_BENT, DROPS_BENT_MOST, DROPS_GLINT, DROPS_LINE, DROPS_OPAQUE, DROPS_SMALL_GRID,
-    DROPS_STILL, DROPS_TABLE, PROJECT_DIAMETERS, STREAK_FINE, STREAK_GOLDEN, STREAK_LATTICE, STREAK_WHITE,
+    DROPS_ATLAS_TAPS, DROPS_BENT, DROPS_BENT_MOST, DROPS_LOOP, DROPS_OPAQUE, DROPS_SMALL_GRID, DROPS_STILL,
+    DROPS_TABLE, PROJECT_DIAMETERS, STREAK_FINE, STREAK_GOLDEN, STREAK_LATTICE, STREAK_WHITE,
 };
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
@@ -16,7 +16,7 @@ use super::drops_frame::DropsView;
 use super::drops_mask::{drops_mask_right, drops_mask_unit};
 use super::drops_shade::DropsShade;
 use super::environment::EnvironmentMap;
-use super::glint::{drop_glint_rousseau, drop_glint_spot, drop_glint_unpack};
+use super::glint::drop_glint_rousseau;
 use super::streak::{
     DropsDrop, StreakChord, streak_chord, streak_cover, streak_depth, streak_mask_position, streak_nearest,
     streak_time, streak_weight,
@@ -31,12 +31,6 @@ use crate::halves::unpack;
 #[must_use]
 pub fn drops_on_plane(towards: Vec3, ray: Vec3) -> Vec3 {
     ray / ray.dot(towards).max(1.0e-6) - towards
-}
-
-/// A spot of unit mean over the disk, summed along a line that passes it at some distance; all in radii.
-#[must_use]
-pub fn drops_line(off: f32, width: f32) -> f32 {
-    DROPS_LINE / width * ops::exp(-0.5 * off * off / (width * width))
 }
 
 /// The fraction of a step by which the samples of a line of pixels are shifted: unshifted, all lines of a plumb streak would meet
@@ -99,29 +93,16 @@ struct Buffers<'a> {
 
 impl Buffers<'_> {
     /// A drop's numbers of light.
-    fn drops_light_row(&self, index: u32) -> &[[f32; 4]] {
+    fn drops_glint_row(&self, index: u32) -> &[[f32; 4]] {
         let stride = 1 + self.view.frame.glints as usize;
         let first = index as usize * stride;
         self.light.get(first..first + stride).unwrap_or(&[[0.0; 4]])
     }
 
-    /// Light of lamps at a position of a drop's disk, in radii: its glints as spots of some width, and the rest everywhere.
-    fn drops_spots(&self, index: u32, at: Vec2, width: f32) -> Vec3 {
-        let row = self.drops_light_row(index);
-        let mut light = Vec4::from(row[0]).truncate();
-        // An atlas has streaks, and nothing of a drop that stands still but its mean.
-        let glints = if self.view.frame.atlas > 0 { &[] } else { &row[1..] };
-        for glint in glints.iter().filter(|glint| glint[3] > 0.0) {
-            let spot = drop_glint_spot(at - drop_glint_unpack(glint[3]), width);
-            light += Vec4::from(*glint).truncate() * (spot - 1.0);
-        }
-        light.max(Vec3::ZERO)
-    }
-
     /// Light of lamps in the form of Rousseau 2006 at a position of a drop's mask, by the normal there, which halves the angle
     /// between the eye and what is mirrored: what it is more than the mean over the drop.
     fn drops_facing(&self, index: u32, drop: &DropsDrop, x: f32, y: f32) -> Vec3 {
-        let row = self.drops_light_row(index);
+        let row = self.drops_glint_row(index);
         let mut light = Vec3::ZERO;
         // An atlas has streaks, other forms have glints.
         if self.view.frame.atlas > 0 || row.len() < 3 || row[1][3] >= 0.0 {
@@ -145,22 +126,9 @@ impl Buffers<'_> {
         light
     }
 
-    /// Light of lamps on a drop that passes, for as long as it does: spots have become lines.
-    fn drops_lines(&self, index: u32, chord: &StreakChord, width: f32) -> Vec3 {
-        let row = self.drops_light_row(index);
-        let part = (chord.high - chord.low) * 0.5;
-        let mut light = Vec4::from(row[0]).truncate() * chord.fraction;
-        for glint in row[1..].iter().filter(|glint| glint[3] > 0.0) {
-            let position = drop_glint_unpack(glint[3]);
-            let off = chord.aside - (position.x * chord.path.y - position.y * chord.path.x);
-            light += Vec4::from(*glint).truncate() * (drops_line(off, width) * chord.pace - chord.fraction);
-        }
-        light.max(Vec3::ZERO) * part
-    }
-
     /// The streaks of a drop's row of light: their colors, and where they are in the atlas.
     fn streaks(&self, index: u32) -> impl Iterator<Item = (Vec3, DropsAtlasStreak)> {
-        let (streaks, _) = self.drops_light_row(index)[1..].as_chunks::<{ DROP_ATLAS_ROWS as usize }>();
+        let (streaks, _) = self.drops_glint_row(index)[1..].as_chunks::<{ DROP_ATLAS_ROWS as usize }>();
         streaks.iter().filter(|[first, ..]| first[3] != 0.0).map(|rows| {
             let [first, second, third] = rows.map(Vec4::from);
             (first.truncate(), drops_atlas_streak(first, second, third))
@@ -173,7 +141,7 @@ impl Buffers<'_> {
 
     /// Light of lamps on a passing drop by the streaks of an atlas, for as long as it passes a position on the plane.
     fn drops_streaks(&self, index: u32, drop: &DropsDrop, chord: &StreakChord, at: Vec2) -> Vec3 {
-        let row = self.drops_light_row(index);
+        let row = self.drops_glint_row(index);
         let part = (chord.high - chord.low) * 0.5;
         let turns = drops_turns(drop, streak_nearest(drop, at));
         let mut light = Vec4::from(row[0]).truncate() * chord.fraction;
@@ -187,7 +155,7 @@ impl Buffers<'_> {
     /// Light of lamps on a drop that is not sampled, as a radiance over all of it: with an atlas bright and dark along its
     /// path.
     fn drops_beads(&self, index: u32, drop: &DropsDrop, x: u32, y: u32) -> Vec3 {
-        let mut light = Vec4::from(self.drops_light_row(index)[0]).truncate();
+        let mut light = Vec4::from(self.drops_glint_row(index)[0]).truncate();
         if self.view.frame.atlas == 0 || drop.spread > 1.0 {
             return light;
         }
@@ -205,11 +173,6 @@ impl Buffers<'_> {
             light += color * (mean / DROPS_ATLAS_TAPS as f32 - 1.0);
         }
         light.max(Vec3::ZERO)
-    }
-
-    /// The width of a glint, in radii: no line is thinner than half a pixel.
-    fn drops_glint_width(&self, drop: &DropsDrop) -> f32 {
-        (0.5 * self.view.frame.camera.pixel_angle / drop.slope).max(DROPS_GLINT)
     }
 
     /// A still drop over a pixel: radiance times coverage, and coverage. Below a pixel it is its mean radiance.
@@ -250,14 +213,13 @@ impl Buffers<'_> {
                 };
                 let mut shown = self.view.drops_shade_ray(&shade, sx, sy);
                 if !small {
-                    let at = Vec2::new(sx, sy) * drop.half_extent;
                     let light = if drops_is_splash(drop) {
                         // Lamps shine on its rims as on so many small drops: no glint has its place on it.
                         let bends = drops_bent(self.view.drops_mask_at(drop.mask_index, sx, sy).direction);
-                        Vec4::from(self.drops_light_row(index)[0]).truncate() * bends
+                        Vec4::from(self.drops_glint_row(index)[0]).truncate() * bends
                     } else {
-                        let spots = self.drops_spots(index, at, self.drops_glint_width(drop));
-                        spots + self.drops_facing(index, drop, sx, sy)
+                        self.view.drops_glint_rest(self.drops_glint_row(index))
+                            + self.drops_facing(index, drop, sx, sy)
                     };
                     shown += (light * shown.w).extend(0.0);
                 }
@@ -265,10 +227,14 @@ impl Buffers<'_> {
             }
         }
         if small {
-            let light = Vec4::from(self.drops_light_row(index)[0]).truncate();
+            let light = Vec4::from(self.drops_glint_row(index)[0]).truncate();
             return (sum.truncate() / sum.w.max(1.0e-20) + light).extend(1.0) * spread;
         }
-        sum / (n * n) as f32
+        sum /= (n * n) as f32;
+        if !drops_is_splash(drop) {
+            sum += self.view.drops_glint_light(self.drops_glint_row(index), drop, x, y).extend(0.0);
+        }
+        sum
     }
 
     /// The part of a chord that passes during the exposure, by the weighted mean over its middle points.
@@ -336,12 +302,17 @@ impl Buffers<'_> {
             let lines = if self.view.frame.atlas > 0 {
                 self.drops_streaks(index, drop, &chord, position)
             } else {
-                self.drops_lines(index, &chord, self.drops_glint_width(drop))
+                let rest = self.view.drops_glint_rest(self.drops_glint_row(index));
+                rest * (chord.fraction * (chord.high - chord.low) * 0.5)
             };
             sum += lines.extend(0.0);
         }
         sum /= drop.grid as f32;
-        sum / sum.w.max(1.0)
+        sum /= sum.w.max(1.0);
+        if drop.kind == DROPS_LOOP {
+            sum += self.view.drops_glint_light(self.drops_glint_row(index), drop, x, y).extend(0.0);
+        }
+        sum
     }
 
     /// A drop over a pixel whose scene is `scene` meters away: radiance times coverage, and coverage.
@@ -352,8 +323,8 @@ impl Buffers<'_> {
         } else {
             self.drops_streak(index, drop, x, y)
         };
-        if shown.w <= 0.0 {
-            return shown;
+        if shown.max_element() <= 0.0 {
+            return Vec4::ZERO;
         }
         if self.view.frame.streak_color == STREAK_WHITE {
             let white = self.view.drops_capture_texel(self.view.frame.capture_last, 0, 0);
@@ -409,7 +380,7 @@ impl Buffers<'_> {
                 break;
             }
             let shown = self.drops_pixel(index, x, y, scene);
-            if shown.w <= 0.0 {
+            if shown.max_element() <= 0.0 {
                 continue;
             }
             let distance = drop.distance.min(end);

@@ -4,10 +4,9 @@
 //! `light` leads from the drop to the lamp, `towards` from the eye to the drop; directions have length 1. Positions on the
 //! disk are in radii, along the right and the up of the view.
 
-use downpour_math::ops;
 use downpour_shaders::render::drop_light::{
-    DROP_GLINT_AXIS, DROP_GLINT_RANGE, DROP_GLINT_STEPS, DROP_GLINT_TINY, DROP_LIGHT_EXTERNAL,
-    DROP_LIGHT_INTERNAL,
+    DROP_GLINT_AXIS, DROP_GLINT_MASK, DROP_GLINT_NUMBER, DROP_GLINT_RANGE, DROP_GLINT_STEPS, DROP_GLINT_TINY,
+    DROP_GLINT_WIDTH_MASK, DROP_GLINT_WIDTHS, DROP_LIGHT_EXTERNAL, DROP_LIGHT_INTERNAL,
 };
 use downpour_shaders::render::specimen::SPECIMEN_TURN;
 use glam::{Vec2, Vec3};
@@ -53,28 +52,51 @@ pub fn drop_glint_side(light: Vec3, right: Vec3, up: Vec3) -> Vec2 {
     if square > DROP_GLINT_AXIS { side / square.max(DROP_GLINT_TINY).sqrt() } else { Vec2::X }
 }
 
-/// Packs a position on the disk into one integer below 2^24, to within 1/4094 of a radius.
+/// Packs a position on the disk and the radius of a lamp's image there, up to a radius of the disk, into the bits of one number: the
+/// position to within 1/1022 of a radius, the image finer the smaller it is.
 #[must_use]
-pub fn drop_glint_pack(position: Vec2) -> f32 {
+pub fn drop_glint_pack(position: Vec2, image: f32) -> f32 {
     let steps =
         (position.clamp(Vec2::NEG_ONE, Vec2::ONE) * DROP_GLINT_STEPS + 0.5 * DROP_GLINT_RANGE).floor();
-    steps.x * DROP_GLINT_RANGE + steps.y
+    let width = (image.clamp(0.0, 1.0).sqrt() * DROP_GLINT_WIDTHS + 0.5) as u32;
+    f32::from_bits(DROP_GLINT_NUMBER | (steps.x as u32) << 19 | (steps.y as u32) << 9 | width)
 }
 
 /// Unpacks a position.
 #[must_use]
 pub fn drop_glint_unpack(word: f32) -> Vec2 {
-    // Whole numbers: a compiler of shaders may add in another order, and 2^23 + 0.5 is no f32.
-    let (steps, range) = (word as u32, DROP_GLINT_RANGE as u32);
-    (Vec2::new((steps / range) as f32, (steps % range) as f32) + 0.5 - 0.5 * DROP_GLINT_RANGE)
-        / DROP_GLINT_STEPS
+    let bits = word.to_bits();
+    let steps = [bits >> 19, bits >> 9].map(|steps| (steps & DROP_GLINT_MASK) as f32);
+    (Vec2::from(steps) + (0.5 - 0.5 * DROP_GLINT_RANGE)) / DROP_GLINT_STEPS
 }
 
-/// A glint of unit mean over the disk: a normal distribution `width` radii wide, `offset` radii from its middle.
+/// Unpacks the radius of an image.
 #[must_use]
-pub fn drop_glint_spot(offset: Vec2, width: f32) -> f32 {
-    let square = width * width;
-    0.5 / square * ops::exp(-0.5 * offset.dot(offset) / square)
+pub fn drop_glint_image(word: f32) -> f32 {
+    let width = (word.to_bits() & DROP_GLINT_WIDTH_MASK) as f32 / DROP_GLINT_WIDTHS;
+    width * width
+}
+
+/// Sine of the scattering angle: twice that of its half times the cosine of its half, exact at both ends.
+#[must_use]
+pub fn drop_glint_sine(light: Vec3, towards: Vec3) -> f32 {
+    let (apart, along) = (light - towards, light + towards);
+    0.5 * (apart.dot(apart) * along.dot(along)).sqrt()
+}
+
+/// The part of a bump from -1 to 1 that lies before a position, 0 to 1.
+#[must_use]
+pub fn drop_glint_before(position: f32) -> f32 {
+    let t = (0.5 + 0.5 * position).clamp(0.0, 1.0);
+    t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
+}
+
+/// The part of a glint that a pixel has: a bump that reaches `reach` pixels from its middle, which is `offset` pixels from the pixel's
+/// upper left corner. All pixels together have all of it.
+#[must_use]
+pub fn drop_glint_pixel(offset: Vec2, reach: f32) -> f32 {
+    let part = |offset: f32| drop_glint_before((1.0 - offset) / reach) - drop_glint_before(-offset / reach);
+    part(offset.x) * part(offset.y)
 }
 
 /// Normalized horizontal part (x, z) of a direction; 0 for a vertical one.

@@ -40,6 +40,7 @@ use rayon::prelude::*;
 use super::GLINTS;
 use super::glint::{
     drop_glint_angle, drop_glint_pack, drop_glint_right, drop_glint_rousseau, drop_glint_side,
+    drop_glint_sine,
 };
 use crate::RenderError;
 use crate::light::{Light, check_lights, light_weight};
@@ -159,6 +160,8 @@ pub struct DropGlint {
     pub order: u32,
     /// Position on the disk, radii along the right ([`drop_glint_right`]) and the up of the view.
     pub position: Vec2,
+    /// Radius of the lamp's image there, in radii: of the disk that has its area.
+    pub image: f32,
     /// Its part of the mean radiance over the disk: a glint that covers a fraction s of the disk is 1/s times as bright.
     pub radiance: Vec3,
 }
@@ -255,8 +258,9 @@ impl<'a> DropLights<'a> {
 
     /// The light on drops ([`drop_light_rows`]; for an atlas then a row for each drop with its axis, against its motion,
     /// and its id below 2^24), in parallel; the same bits for any number of threads. For each drop [`DropLights::stride`]
-    /// rows: the mean radiance over its disk and 0; then its brightest glints in no order, their part of the mean and their
-    /// position ([`drop_glint_unpack`](super::glint::drop_glint_unpack)), 0 where there are no more. Of an atlas: its
+    /// rows: the mean radiance over its disk and 0; then its brightest glints in no order, their part of the mean, and their
+    /// position ([`drop_glint_unpack`](super::glint::drop_glint_unpack)) and image
+    /// ([`drop_glint_image`](super::glint::drop_glint_image)), 0 where there are no more. Of an atlas: its
     /// streaks, three rows each as in the shader.
     #[must_use]
     pub fn light(&self, drops: &[[f32; 4]]) -> Vec<[f32; 4]> {
@@ -276,16 +280,20 @@ impl<'a> DropLights<'a> {
         let (towards, right, up) = self.facing(position);
         let mut all = Vec::new();
         for k in 0..self.lighting.light_count() {
-            let light = self.lighting.light(k).light_sample(position, least);
+            let lamp = self.lighting.light(k);
+            let light = lamp.light_sample(position, least);
             let visible = self.lighting.visibility(position, light.direction, light.distance);
             let irradiance = light.irradiance * visible * PI;
             let angle = drop_glint_angle(light.direction, towards);
             let side = drop_glint_side(light.direction, right, up);
+            let sine = drop_glint_sine(light.direction, towards);
+            let reach = drop_light_reach(&lamp, light.spread);
             for (path, order) in (1..=DROP_LIGHT_PATHS).zip([0, 1, 2, 2, 3, 3]) {
                 let entry = drop_light_entry(self.table, path, angle);
                 let radiance = irradiance * entry.truncate();
                 if light_weight(radiance) > 0.0 {
-                    all.push(DropGlint { light: k, order, position: side * entry.w, radiance });
+                    let image = drop_light_image(self.table, path, [angle, sine], entry.w, reach);
+                    all.push(DropGlint { light: k, order, position: side * entry.w, image, radiance });
                 }
             }
         }
@@ -347,10 +355,10 @@ impl<'a> DropLights<'a> {
                 continue;
             }
             lit *= self.lighting.visibility(position, light.direction, light.distance);
+            let reach = drop_light_reach(&lamp, light.spread);
             match form {
                 DROP_LIGHT_IM_SUNG => sum += lit,
                 DROP_LIGHT_LAMPS_TRACED | DROP_LIGHT_LAMPS_ROUSSEAU => {
-                    let reach = drop_light_reach(&lamp);
                     let rows = [lit.extend(reach), light.direction.extend(0.0)];
                     sum += self.drop_light_keep_lamp(glints, rows, towards);
                 }
@@ -370,12 +378,14 @@ impl<'a> DropLights<'a> {
                 _ => {
                     let angle = drop_glint_angle(light.direction, towards);
                     let side = drop_glint_side(light.direction, right, up);
+                    let sine = drop_glint_sine(light.direction, towards);
                     let irradiance = lit * PI;
                     sum += irradiance * drop_light_entry(self.table, 0, angle).truncate();
                     for path in 1..=DROP_LIGHT_PATHS {
                         let entry = drop_light_entry(self.table, path, angle);
                         let radiance = irradiance * entry.truncate();
-                        drop_light_keep(glints, radiance.extend(drop_glint_pack(side * entry.w)));
+                        let image = drop_light_image(self.table, path, [angle, sine], entry.w, reach);
+                        drop_light_keep(glints, radiance.extend(drop_glint_pack(side * entry.w, image)));
                     }
                 }
             }
@@ -394,6 +404,24 @@ fn drop_light_entry(table: &DropLightTable, row: u32, angle: f32) -> Vec4 {
     let at = |k: u32| table.rows().get((first + k) as usize).map_or(Vec4::ZERO, |&row| Vec4::from(row));
     let here = at(low);
     here + (at((low + 1).min(last)) - here) * part
+}
+
+/// Radius of the image of a lamp on a drop's disk, in radii of the drop: of the disk that has its area. Law: a lamp whose rays leave the
+/// drop at `position` from the axis is an ellipse there: along the side of the lamp as large as its disk times the change of the
+/// position with the scattering angle, around the axis as large as its disk times the position over the angle's sine.
+fn drop_light_image(
+    table: &DropLightTable,
+    path: u32,
+    [angle, sine]: [f32; 2],
+    position: f32,
+    reach: f32,
+) -> f32 {
+    let step = 1.0 / DROP_LIGHT_ENTRIES as f32;
+    let change =
+        drop_light_entry(table, path, angle + step).w - drop_light_entry(table, path, angle - step).w;
+    let along = change.abs() / (2.0 * PI * step);
+    let around = position.abs() / sine.max(step);
+    (reach * (along * around).sqrt()).min(1.0)
 }
 
 /// The mean over a drop's disk of what Rousseau's formula gives at its pixels.

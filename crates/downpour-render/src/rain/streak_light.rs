@@ -4,8 +4,8 @@ use downpour_math::packing::{packing_octahedral_decode, packing_unpack_snorm, pa
 use downpour_shaders::render::drop_light::DROP_GLINT_TINY;
 use downpour_shaders::render::rain::{
     DROPS_SHIFT, STREAK_EXITS, STREAK_LAMPS, STREAK_NARROWEST, STREAK_QUARTER, STREAK_SPOT_ALONG,
-    STREAK_SPOT_FIRST, STREAK_SPOT_LATER, STREAK_SPOT_NARROW, STREAK_SPOT_REACH, STREAK_SPOT_SECOND,
-    STREAK_SPOT_THIRD, STREAK_SPOT_WIDTH, STREAK_SPOTS, STREAK_SUMS,
+    STREAK_SPOT_EDGE, STREAK_SPOT_FIRST, STREAK_SPOT_LATER, STREAK_SPOT_NARROW, STREAK_SPOT_REACH,
+    STREAK_SPOT_SECOND, STREAK_SPOT_THIRD, STREAK_SPOT_WIDTH, STREAK_SPOTS, STREAK_SUMS,
 };
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
@@ -14,7 +14,7 @@ use super::drops_frame::DropsView;
 use super::drops_mask::drops_mask_unit;
 use super::glint::{drop_glint_right, drop_glint_rousseau};
 use super::streak::DropsDrop;
-use super::streak_cell::streak_cell_position;
+use super::streak_cell::{streak_cell_position, streak_cell_slope, streak_cell_weight};
 use super::streak_path::{StreakPath, streak_path_instant};
 use super::streak_rays::StreakRay;
 
@@ -37,12 +37,13 @@ struct StreakExit {
     passed: u32,
 }
 
-/// Change of an exit along an axis: first and second difference per ray, and first difference of its fraction.
+/// Change of an exit along an axis: first and second difference per ray of its direction and of its fraction.
 #[derive(Clone, Copy, Debug, Default)]
 struct StreakChange {
     first: Vec3,
     fraction: f32,
     second: Vec3,
+    fraction_second: f32,
 }
 
 /// A ray's patch: its exit and how that goes across, along and in time.
@@ -66,16 +67,17 @@ fn streak_light_change(before: &StreakExit, here: &StreakExit, after: &StreakExi
             first: (after.direction - before.direction) * 0.5,
             fraction: (after.fraction - before.fraction) * 0.5,
             second: after.direction + before.direction - here.direction * 2.0,
+            fraction_second: after.fraction + before.fraction - here.fraction * 2.0,
         },
         (false, true) => StreakChange {
             first: after.direction - here.direction,
             fraction: after.fraction - here.fraction,
-            second: Vec3::ZERO,
+            ..StreakChange::default()
         },
         (true, false) => StreakChange {
             first: here.direction - before.direction,
             fraction: here.fraction - before.fraction,
-            second: Vec3::ZERO,
+            ..StreakChange::default()
         },
         (false, false) => StreakChange::default(),
     }
@@ -110,6 +112,18 @@ fn streak_light_direction(ray: &StreakPatch, position: Vec3) -> Vec3 {
     drops_mask_unit(linear + squares + mixed)
 }
 
+/// The fraction of the light at a position of a patch.
+fn streak_light_fraction(ray: &StreakPatch, position: Vec3) -> f32 {
+    let linear = ray.middle.fraction
+        + ray.across.fraction * position.x
+        + ray.along.fraction * position.y
+        + ray.later.fraction * position.z;
+    let squares = ray.across.fraction_second * (0.5 * position.x * position.x)
+        + ray.along.fraction_second * (0.5 * position.y * position.y)
+        + ray.later.fraction_second * (0.5 * position.z * position.z);
+    (linear + squares).clamp(0.0, 1.0)
+}
+
 /// Width of a patch across and along, at a time.
 fn streak_light_size(ray: &StreakPatch, later: f32) -> Vec2 {
     let across = ray.across.first + ray.across_later * later;
@@ -117,16 +131,26 @@ fn streak_light_size(ray: &StreakPatch, later: f32) -> Vec2 {
     Vec2::new(across.dot(across).sqrt(), along.dot(along).sqrt())
 }
 
-/// Fraction of a patch's points, and the part of the fine column that each is in, that lie in a lamp's disk. Its radiance is that
-/// of an irradiance of 1. `reach`: the chord from the middle to the edge of the disk; `span`: rays between two rows of the
-/// profile; `shift` tells the points of a patch from its neighbors'.
+/// Cell of a ray in the grid of its row: columns of rays across the motion, each of several fine columns, and rays along a chord.
+#[derive(Clone, Copy, Debug)]
+struct StreakCell {
+    column: u32,
+    tap: u32,
+    columns: u32,
+    fine: u32,
+}
+
+/// Light of a lamp with an irradiance of 1 in the fine columns of a ray's cell, as parts of the light of a chord: the mean over the
+/// points of its patch, of which those that see the lamp's disk show its radiance. `reach`: the chord from the middle to the edge of the
+/// disk; `span`: rays between two rows of the profile; `shift` tells the points of a patch from its neighbors'. A point stands for the
+/// part of the outline's area around it; what is looked up between fine columns then has the light of the points.
 fn streak_light_spot(
     ray: &StreakPatch,
     [later, span]: [f32; 2],
     size: Vec2,
     lamp: Vec3,
     reach: f32,
-    fine: u32,
+    cell: StreakCell,
     shift: Vec3,
 ) -> [f32; FINE] {
     let mut spots = [0.0; FINE];
@@ -136,23 +160,40 @@ fn streak_light_spot(
     let count = STREAK_SPOTS as f32;
     let spot = STREAK_SPOT_WIDTH * (area / count).sqrt();
     let wide = reach.max(spot);
-    if middle.dot(middle).sqrt() > wide + STREAK_SPOT_REACH * (size.x + size.y + moves) {
+    // The edge of a disk is as soft as points are apart.
+    let edge = if spot > reach { 0.0 } else { 0.5 * spot };
+    if middle.dot(middle).sqrt() > wide + edge + STREAK_SPOT_REACH * (size.x + size.y + moves) {
         return spots;
     }
-    let radiance = fine as f32 / (count * 2.0 * STREAK_QUARTER * wide * wide);
+    let whole = 2.0 * STREAK_QUARTER * (wide * wide + edge * edge / 3.0);
+    let radiance = cell.fine as f32 / (count * whole);
     for k in 0..STREAK_SPOTS {
         let number = k as f32 + 0.5;
         let steps = Vec3::new(1.0 / count, STREAK_SPOT_ALONG, STREAK_SPOT_LATER);
         let point = (steps * number + shift).fract();
-        let position = point - 0.5;
-        let apart =
-            streak_light_direction(ray, Vec3::new(position.x, position.y, later + position.z * span)) - lamp;
-        let off = apart.dot(apart) / (wide * wide);
-        if off < 1.0 {
+        let position = Vec3::new(point.x - 0.5, point.y - 0.5, later + (point.z - 0.5) * span);
+        let apart = streak_light_direction(ray, position) - lamp;
+        let off = apart.dot(apart).sqrt();
+        if off < wide + edge {
             // A disk, or a spot that fades toward its edge.
-            let faded = if spot > reach { 2.0 * (1.0 - off) } else { 1.0 };
-            spots[((point.x * fine as f32) as u32).min(fine - 1) as usize] += radiance * faded;
+            let faded = if spot > reach {
+                2.0 * (1.0 - off * off / (wide * wide))
+            } else {
+                (0.5 + 0.5 * (wide - off) / edge.max(STREAK_SPOT_EDGE)).clamp(0.0, 1.0)
+            };
+            let part = ((point.x * cell.fine as f32) as u32).min(cell.fine - 1);
+            let along = streak_cell_slope(cell.tap as f32 + point.y, cell.columns);
+            let across = streak_cell_slope(cell.column as f32 + point.x, cell.columns);
+            // Chords are the shorter the farther out, and columns stand the closer.
+            let density = along * across * across;
+            spots[part as usize] += radiance * faded * density * streak_light_fraction(ray, position);
         }
+    }
+    let count = cell.columns * cell.fine;
+    // Half the length of a chord is 1.
+    let length = STREAK_QUARTER / cell.columns as f32;
+    for (part, spot) in (0..cell.fine).zip(&mut spots) {
+        *spot *= length / streak_cell_weight(cell.column * cell.fine + part, count);
     }
     spots
 }
@@ -209,6 +250,12 @@ impl Streak<'_> {
         pairs.iter().map(|&[lamp, towards]| (Vec4::from(lamp), Vec4::from(towards).truncate()))
     }
 
+    /// Mean radiance of the lamps over all directions.
+    fn streak_light_even(&self) -> Vec3 {
+        let lamps = self.lamps().filter(|(lamp, _)| lamp.w > 0.0);
+        lamps.fold(Vec3::ZERO, |sum, (lamp, _)| sum + lamp.truncate()) * (0.125 / STREAK_QUARTER)
+    }
+
     /// Light of the lamps in the form of Rousseau 2006 where a ray meets the drop: by the normal there, which halves the angle
     /// between the eye and what is mirrored.
     fn streak_light_facing(&self, view: Vec3, at: [i32; 3]) -> Vec3 {
@@ -230,7 +277,7 @@ impl Streak<'_> {
         let nearest = ((at + 0.5) as u32).min(path.rows - 1);
         let later = at - nearest as f32;
         let none = Vec4::from(self.lamps[0]).truncate();
-        let lost = self.view.drops_capture_texel(frame.capture_last, 0, 0);
+        let lost = self.view.drops_capture_texel(frame.capture_last, 0, 0) + self.streak_light_even();
         let view = streak_light_view(self.drop, row as f32 / (path.profile_rows - 1) as f32);
         let mut made = [[[0.0; 4]; SUMS]; FINE];
         let mut sums = [Vec3::ZERO; FINE];
@@ -245,6 +292,7 @@ impl Streak<'_> {
             let shift =
                 (Vec3::new(STREAK_SPOT_FIRST, STREAK_SPOT_SECOND, STREAK_SPOT_THIRD) * number).fract();
             let nodes = [nearest, column, tap].map(|n| n as i32);
+            let cell = StreakCell { column, tap, columns: path.columns, fine: path.fine };
             let mut even = none + self.streak_light_facing(view, nodes);
             let mut seen = Vec3::ZERO;
             let mut rest = 1.0f32;
@@ -267,9 +315,9 @@ impl Streak<'_> {
                 seen += self.view.drops_capture_about(self.drop.towards.into(), direction, width) * shown;
                 for (lamp, towards) in self.lamps().filter(|(lamp, _)| lamp.w > 0.0) {
                     let time = [later, rays_per_row];
-                    let spots = streak_light_spot(&ray, time, size, towards, lamp.w, path.fine, shift);
+                    let spots = streak_light_spot(&ray, time, size, towards, lamp.w, cell, shift);
                     for (sum, spot) in sums.iter_mut().zip(spots) {
-                        *sum += lamp.truncate() * (spot * fraction * weight);
+                        *sum += lamp.truncate() * spot;
                     }
                 }
             }

@@ -6,7 +6,7 @@ use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_shaders::sim::step::{STEP_CLEAR, VOLUME_RADIUS};
 use glam::DVec3;
 
-use super::{Impact, MAX_SPAN_S};
+use super::{CURVED_M, Candidate, Impact, MAX_SPAN_S, OfClass};
 use crate::SimError;
 use crate::drift::Drift;
 use crate::facets::Facets;
@@ -20,8 +20,9 @@ use crate::view::{Bounds, View, within};
 /// Interval at which the path of a droplet is divided, s.
 const FINE_S: f64 = 1.0 / 60.0;
 
-/// Approximate span of time in which impacts of droplets are searched at once, s.
-const SLICE_S: f64 = 1.0;
+/// Approximate span of time in which impacts of droplets are searched at once, s: that of the slips of droplets. In a wind those of a
+/// slice come from nearby.
+const SLICE_S: f64 = 0.125;
 
 /// Dimension of the random numbers of rebounds.
 const CHANCE: u32 = 8203;
@@ -62,46 +63,55 @@ impl RainField {
         let span = longest + view.shutter_s;
         let slices = (span / SLICE_S).ceil().max(1.0);
         let facets = Facets::new(obstacles);
-        let mut impacts = Vec::new();
+        let mut droplets = Vec::new();
         for slice in 0..slices as u32 {
             let ages = [slice, slice + 1].map(|k| f64::from(k) * span / slices - half);
             let travels = Travels::new(self, time_s, ages);
-            let origins = |class: &Class| {
+            let of_class = |class: &Class| {
                 let origins = travels.origins(self, class, view, least_pixels, bounce)?;
-                Some((origins.bounds, move |place: &Bounds| origins.may_be_in(place, view, &swept_sides)))
+                let (bounds, swept_sides) = (origins.bounds, &swept_sides);
+                let in_part = move |place: &Bounds| origins.may_be_in(place, view, swept_sides);
+                let wanted = move |drop: &Candidate| {
+                    let [from, to] = drop.ends;
+                    let path = Bounds { low: from.min(to) - CURVED_M, high: from.max(to) + CURVED_M };
+                    sent_up(drop.id) && origins.may_be_in(&path, view, swept_sides)
+                };
+                Some(OfClass { bounds, in_part, wanted })
             };
             let span = [time_s - ages[1], time_s - ages[0]];
-            impacts.extend(self.impacts_of(&facets, span, origins, sent_up)?);
-        }
-        let shown = impacts.iter().filter_map(|impact| {
-            let droplet = Droplet::of(self, impact, bounce)?;
-            let age = time_s - impact.time_s;
-            // A droplet that starts later in the exposure is listed as if it had always moved.
-            let (position, velocity) = if age > 0.0 {
-                droplet.at(age)
-            } else {
-                (droplet.start + droplet.leaves * age, droplet.leaves)
+            let shown = |impact: &Impact| {
+                let droplet = Droplet::of(self, impact, bounce)?;
+                let age = time_s - impact.time_s;
+                // A droplet that starts later in the exposure is listed as if it had always moved.
+                let (position, velocity) = if age > 0.0 {
+                    droplet.at(age)
+                } else {
+                    (droplet.start + droplet.leaves * age, droplet.leaves)
+                };
+                let range = view.range(droplet.diameter, least_pixels);
+                let radius = f64::from(VOLUME_RADIUS) * droplet.diameter;
+                let part = [-age, longest - age];
+                let is_shown =
+                    part[1] >= -half && view.shows(&sides, position, velocity, radius, range, part);
+                is_shown.then_some((impact.id, age, droplet, position, velocity))
             };
-            let range = view.range(droplet.diameter, least_pixels);
-            let radius = f64::from(VOLUME_RADIUS) * droplet.diameter;
-            let part = [-age, longest - age];
-            if part[1] < -half || !view.shows(&sides, position, velocity, radius, range, part) {
-                return None;
-            }
+            droplets.extend(self.impacts_of(&facets, 0.0, span, of_class, shown)?);
+        }
+        let listed = droplets.into_iter().filter_map(|(id, age, droplet, position, velocity)| {
             let stopped = droplet.stopped(obstacles, (age + half).min(longest)).map(|after| after - age);
             let until = stopped.unwrap_or(longest - age);
             let mut drop = FallingDrop {
                 position,
                 velocity: velocity.as_vec3().to_array(),
                 diameter: droplet.diameter as f32,
-                id: impact.id ^ DROPLET,
+                id: id ^ DROPLET,
                 kind: DropKind::Bounced,
                 present_s: [-age, until].map(|time| time as f32),
             };
             drop.position += velocity * f64::from(drop.seen_s());
             (until > -half).then_some(drop)
         });
-        Ok(shown.collect())
+        Ok(listed.collect())
     }
 }
 
@@ -136,17 +146,26 @@ impl Travels {
         }
         let speeds = [class.speeds[0] * 0.2 * size, field.speed.at(class.largest * size).unwrap_or(0.0)];
         let [now, oldest, youngest] = &self.drifts;
-        // Displacement by the wind of a drop that has always followed it.
-        let carried = speeds
-            .iter()
-            .flat_map(|&speed| [oldest, youngest].map(|then| now.of(speed)[0] - then.of(speed)[0]));
+        // The rebounding part of a drop's velocity.
+        let wind = oldest.of(class.speeds[1])[1].length().max(now.of(class.speeds[1])[1].length());
+        let rebounds = f64::from(bounce.restitution.max(1.0 - bounce.grip));
+        let leaves = rebounds * ops::hypot(class.speeds[1], wind);
+        // Seconds for which a velocity that decays counts.
+        let lasts = |age: f64, speed: f64| {
+            let time = relaxation(speed).horizontal_s.max(1.0e-9);
+            time * (1.0 - ops::exp(-age / time))
+        };
+        let own = leaves * lasts(self.ages[1], speeds[1]);
+        // Displacement by the wind of a drop that takes its velocity on.
+        let carried = speeds.iter().flat_map(|&speed| {
+            [(oldest, self.ages[1]), (youngest, self.ages[0])].map(|(then, age)| {
+                let [displacement, velocity] = then.of(speed);
+                now.of(speed)[0] - displacement - velocity * lasts(age, speed)
+            })
+        });
         let (low, high) = carried
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), way| (low.min(way), high.max(way)));
-        // The rebounding part of the drop's velocity, and the initial slip of a drop of another size.
-        let wind = oldest.of(class.speeds[1])[1].length().max(now.of(class.speeds[1])[1].length());
-        let leaves = f64::from(bounce.restitution.max(1.0 - bounce.grip)) * (class.speeds[1] + wind) + wind;
-        let slowed = relaxation(speeds[1]).horizontal_s;
-        let own = leaves * slowed.min(self.ages[1]);
+        let own = own + 0.05 * (high - low).length();
         let margin = 0.5 * view.shutter_s * (leaves + wind) + class.largest;
         let seen = view.bounds(range, margin);
         let way = Bounds {
@@ -159,6 +178,7 @@ impl Travels {
 }
 
 /// Where the droplets of a class that a picture shows come from.
+#[derive(Clone, Copy)]
 struct Origins {
     bounds: Bounds,
     /// Bounds of the droplets' ways.

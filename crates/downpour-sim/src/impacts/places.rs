@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use downpour_bvh::bvh_bounds_within;
+use downpour_bvh::{BvhTriangle, bvh_bounds_within};
 use glam::{DVec3, Vec3};
 
 use crate::shelter::Obstacles;
@@ -20,19 +20,28 @@ const SLACK_M: f64 = 0.01;
 /// Bounds of the obstacles in each cell of a lattice, found when they are asked for.
 pub(super) struct Places<'a> {
     obstacles: &'a Obstacles<'a>,
+    /// Least vertical component of the normals of the surfaces that are asked for, on either side.
+    least_level: f32,
     edge: f64,
     found: HashMap<[i64; 3], Option<Bounds>>,
 }
 
+/// True if the normal of a triangle has a vertical component of `least` or more, on either side.
+fn is_level(triangle: &BvhTriangle, least: f32) -> bool {
+    let normal = Vec3::from(triangle.edge_1).cross(triangle.edge_2.into());
+    // A triangle of no area has no normal.
+    least <= 0.0 || normal.y.abs() >= least * normal.length()
+}
+
 impl<'a> Places<'a> {
-    /// Places in boxes that are within `all`.
-    pub(super) fn new(obstacles: &'a Obstacles<'a>, all: &Bounds) -> Self {
+    /// Places in boxes that are within `all`, of surfaces whose normal has a vertical component of `least_level` or more, on either side.
+    pub(super) fn new(obstacles: &'a Obstacles<'a>, all: &Bounds, least_level: f32) -> Self {
         let edge = ((all.high - all.low).max_element() / MAX_CELLS).max(CELL_M);
-        Self { obstacles, edge, found: HashMap::new() }
+        Self { obstacles, least_level, edge, found: HashMap::new() }
     }
 
-    /// Boxes in `bounds`, apart from each other along x or z, that hold all obstacles in it, of those cells that are asked for. Neighbors
-    /// along x are one box where that has less volume when each box is larger by `around`, m.
+    /// Boxes in `bounds`, apart from each other, that hold all obstacles in it, of those cells that are asked for. Neighbors
+    /// along y or x are one box where that has less volume when each box is larger by `around`, m.
     pub(super) fn within(
         &mut self,
         bounds: &Bounds,
@@ -42,38 +51,50 @@ impl<'a> Places<'a> {
         let cell = |at: DVec3| (at / self.edge).floor().to_array().map(|x| x as i64);
         let (first, last) = (cell(bounds.low), cell(bounds.high));
         let volume = |b: &Bounds| (b.high - b.low + around).element_product();
+        let joined = |a: &Bounds, b: &Bounds| {
+            let both = a.union(b);
+            (volume(&both) <= volume(a) + volume(b)).then_some(both)
+        };
         let mut boxes: Vec<Bounds> = Vec::new();
         for z in first[2]..=last[2] {
-            let mut run: Option<Bounds> = None;
+            // The boxes of the last column; one alone may go on.
+            let mut before: Vec<Bounds> = Vec::new();
             for x in first[0]..=last[0] {
-                let in_cell =
-                    |y| self.of_cell([x, y, z]).and_then(|place| place.common(bounds)).filter(&wanted);
-                let place = (first[1]..=last[1]).filter_map(in_cell).reduce(|a, b| a.union(&b));
-                let joined = match (&run, &place) {
-                    (Some(run), Some(place)) => {
-                        Some(run.union(place)).filter(|both| volume(both) <= volume(run) + volume(place))
+                let mut column: Vec<Bounds> = Vec::new();
+                for y in first[1]..=last[1] {
+                    let place = self.of_cell([x, y, z]).and_then(|place| place.common(bounds));
+                    let Some(place) = place.filter(&wanted) else { continue };
+                    match column.last_mut().and_then(|last| Some((joined(last, &place)?, last))) {
+                        Some((both, last)) => *last = both,
+                        None => column.push(place),
                     }
-                    _ => None,
-                };
-                if joined.is_none() {
-                    boxes.extend(run.take());
                 }
-                run = joined.or(place);
+                if let ([last], [place]) = (&before[..], &column[..])
+                    && let Some(both) = joined(last, place)
+                {
+                    before = vec![both];
+                } else {
+                    boxes.append(&mut before);
+                    before = column;
+                }
             }
-            boxes.extend(run);
+            boxes.append(&mut before);
         }
         boxes
     }
 
     /// Bounds of the obstacles in a cell.
     fn of_cell(&mut self, cell: [i64; 3]) -> Option<Bounds> {
-        let (edge, obstacles) = (self.edge, self.obstacles);
+        let (edge, obstacles, least) = (self.edge, self.obstacles, self.least_level);
         *self.found.entry(cell).or_insert_with(|| {
             let low = DVec3::from_array(cell.map(|k| k as f64)) * edge;
             let whole = Bounds { low, high: low + edge };
             let [low, high] = [low - SLACK_M, low + edge + SLACK_M]
                 .map(|corner| (corner - obstacles.origin).as_vec3().to_array());
-            let [low, high] = bvh_bounds_within(obstacles.nodes, obstacles.triangles, low, high)?
+            let [low, high] =
+                bvh_bounds_within(obstacles.nodes, obstacles.triangles, low, high, |triangle| {
+                    is_level(triangle, least)
+                })?
                 .map(|corner| Vec3::from(corner).as_dvec3() + obstacles.origin);
             Bounds { low: low - SLACK_M, high: high + SLACK_M }.common(&whole)
         })

@@ -4,13 +4,14 @@ use downpour_drop::splash::{Splash, SplashLaw, crown};
 use downpour_math::in_range;
 use downpour_math::rng::{rng_draw, rng_unit};
 
-use super::Impact;
+use super::{Candidate, Impact, OfClass};
 use crate::SimError;
 use crate::facets::Facets;
 use crate::falling::{DropKind, FallingDrop};
 use crate::field::{Class, RainField, check_time};
 use crate::shelter::Obstacles;
 use crate::view::{Bounds, View, within};
+use glam::DVec3;
 
 /// Dimension of the random numbers of splashes.
 const SIZE: u32 = 8204;
@@ -61,22 +62,28 @@ impl RainField {
         check_time(time_s)?;
         in_range("size of splashes", options.size, "", &(0.1..=10.0), 1.0, "0.1 to 10")?;
         let sides = view.sides();
-        let bounds = |class: &Class| {
-            // The wind adds to the speed of a drop toward a slope.
-            let speed = class.speeds[1] + self.wind.velocity(time_s).length();
-            let radius = options.law.splash(class.largest, speed)?.radius_m * options.size * SIZES[1];
-            let range = view.range(2.0 * radius, LEAST_PIXELS);
-            let in_picture = move |place: &Bounds| {
-                let offset = place.low.midpoint(place.high) - view.eye;
-                let reach = 0.5 * (place.high - place.low).length() + radius;
-                offset.length() - reach <= range && within(&sides, offset, reach)
-            };
-            (range >= view.near).then(|| (view.bounds(range, radius), in_picture))
+        // The wind adds to the speed of a drop toward a slope.
+        let wind = self.wind.velocity(time_s).length();
+        let reach = |diameter: f64, speed: f64| {
+            let radius = options.law.splash(diameter, speed + wind)?.radius_m * options.size * SIZES[1];
+            Some((radius, view.range(2.0 * radius, LEAST_PIXELS)))
         };
-        let impacts =
-            self.impacts_of(&Facets::new(obstacles), [time_s - LONGEST_S, time_s], bounds, |_| true)?;
-        let mut crowns: Vec<FallingDrop> =
-            impacts.iter().filter_map(|impact| options.crown(impact, view, time_s)).collect();
+        let of_class = |class: &Class| {
+            let (radius, range) = reach(class.largest, class.speeds[1])?;
+            let shown = move |(middle, half): (DVec3, f64), radius: f64, range: f64| {
+                let offset = middle - view.eye;
+                offset.length() - half - radius <= range && within(&sides, offset, half + 1.5 * radius)
+            };
+            let in_part = move |place: &Bounds| shown(place.ball(), radius, range);
+            let wanted = move |drop: &Candidate| {
+                let found = reach(drop.diameter.into(), drop.speed);
+                found.is_some_and(|(radius, range)| shown(drop.ball(), radius, range))
+            };
+            (range >= view.near).then(|| OfClass { bounds: view.bounds(range, radius), in_part, wanted })
+        };
+        let span_s = [time_s - LONGEST_S, time_s];
+        let crown = |impact: &Impact| options.crown(impact, view, time_s);
+        let mut crowns = self.impacts_of(&Facets::new(obstacles), LEVEL, span_s, of_class, crown)?;
         if crowns.len() > MOST {
             crowns.sort_by(|a, b| b.diameter.total_cmp(&a.diameter).then(a.id.cmp(&b.id)));
             crowns.truncate(MOST);
@@ -98,7 +105,7 @@ impl SplashOptions {
         let [chance, ..] = rng_draw([impact.id as u32, (impact.id >> 32) as u32], 0, 0, SIZE).map(rng_unit);
         let random = SIZES[0] + (SIZES[1] - SIZES[0]) * f64::from(chance);
         let radius = radius_m * self.size * random;
-        let position = impact.position + glam::DVec3::Y * (radius * crown::middle(age_s / duration_s));
+        let position = impact.position + DVec3::Y * (radius * crown::middle(age_s / duration_s));
         let range = view.range(2.0 * radius, LEAST_PIXELS);
         let offset = position - view.eye;
         // The mask reaches beyond the largest radius, to the droplets of the rim.

@@ -12,7 +12,7 @@ use downpour_specimen::lamp::specimen_lamp;
 use downpour_specimen::sky::{specimen_sky_position, specimen_turns};
 use downpour_specimen::trace::{
     SpecimenCamera, SpecimenLight, SpecimenRay, specimen_bounce, specimen_enter, specimen_hits, specimen_ray,
-    upright_drop,
+    specimen_split_inside, specimen_split_outside, upright_drop,
 };
 use downpour_specimen::{Image, Sky, SpecimenLamp, SpecimenOptions, render_specimen, specimen_jitter};
 
@@ -91,6 +91,33 @@ pub(super) fn light(args: &mut Args<'_>) -> SpecimenLight<f32> {
     SpecimenLight { point, fraction, exit, rest: args.f32(), inside: args.f32s() }
 }
 
+/// A normal, and a direction against it.
+fn normal_and_ray(random: [u32; 4]) -> Vec<u32> {
+    let unit = |a: u32, b: u32, c: u32| {
+        let [x, y, z] = [a, b, c].map(|word| 2.0 * rng_unit(word) - 0.9999);
+        normalize([x, y, z])
+    };
+    let normal = unit(random[0], random[1], random[2]);
+    let direction = unit(random[3], random[0].rotate_left(11), random[1].rotate_left(17));
+    let along = dot(direction, normal);
+    // Not along the surface.
+    let direction = if along < -0.02 { direction } else { scale(normal, -1.0) };
+    (normal, direction).words()
+}
+
+/// Light inside a drop, and the point and normal that it meets.
+fn light_and_normal(random: [u32; 4]) -> Vec<u32> {
+    let [nx, ny, nz, dx, dy, dz] = Args::new(&normal_and_ray(random)).f32s::<6>();
+    let light = SpecimenLight {
+        point: [0.0; 3],
+        fraction: 0.0,
+        exit: [1.0, 0.0, 0.0],
+        rest: rng_unit(random[2].rotate_left(5)),
+        inside: [-dx, -dy, -dz],
+    };
+    [light_words(&light), ([0.5f32, -0.5, 0.25], [nx, ny, nz]).words()].concat()
+}
+
 /// A camera at 1.2 to 10^5 radii in which the drop fills most of a picture 400 samples high.
 fn camera_words(random: [u32; 4]) -> Vec<u32> {
     let unit = random.map(|w| f64::from(rng_unit(w)));
@@ -153,6 +180,27 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &[Made(|r| drop_and_ray(r, 1.3))],
             Tol::exact("a boolean: a ray that grazes the drop may fall on either side").with_outliers(1.0e-3),
             |a| specimen_hits(&drop(a), &ray(a)).words(),
+        ),
+        FunctionCase::new(
+            "specimen_split_outside",
+            module,
+            &[Uniform(-1.0, 1.0), Uniform(-1.0, 1.0), Uniform(-1.0, 1.0), Made(normal_and_ray), Uniform(1.2, 1.5)],
+            Tol::absolute(4.0e-6, "square roots and divisions (2.5 ulp) of products of unit vectors"),
+            |a| {
+                let (point, normal, direction) = (a.f32s(), a.f32s(), a.f32s());
+                light_words(&specimen_split_outside(point, normal, direction, a.f32()))
+            },
+        ),
+        FunctionCase::new(
+            "specimen_split_inside",
+            module,
+            &[Made(light_and_normal), Uniform(1.2, 1.5), OneOf(&[1.0e-4, 2.0])],
+            Tol::absolute(1.0e-4, "the same; refraction multiplies the errors close to the critical angle")
+                .with_outliers(2.0e-3),
+            |a| {
+                let (light, point, normal) = (light(a), a.f32s(), a.f32s());
+                light_words(&specimen_split_inside(&light, point, normal, a.f32(), a.f32()))
+            },
         ),
         FunctionCase::new(
             "specimen_enter",

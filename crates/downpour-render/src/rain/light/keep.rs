@@ -51,9 +51,9 @@ pub(super) fn drop_light_keep_streak(rows: &mut [[f32; 4]], radiance: Vec3, slot
     }
 }
 
-/// Chord from the middle to the edge of a lamp's disk: that of the sun where the lamp has no size.
-pub(super) fn drop_light_reach(light: &Light) -> f32 {
-    light.chord.max(DROP_LIGHT_REACH)
+/// Chord from the middle to the edge of a lamp's disk as a drop sees it: no lamp has less than the sun's.
+pub(super) fn drop_light_reach(light: &Light, spread: f32) -> f32 {
+    light.chord.max(spread).max(DROP_LIGHT_REACH)
 }
 
 impl DropLights<'_> {

@@ -1,0 +1,68 @@
+//! Frames of the street for a live display, against frames with all their layers: `frame` traces the scene for each, `kept` draws
+//! rain before a plate that stays, `display` reads no more than pixels of that, `drag` changes the rain rate before each.
+//!
+//! At 1920x1080 on hardware, at 240x135 on a software driver.
+
+use std::path::Path;
+
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use downpour::gpu::{AdapterChoice, Gpu};
+use downpour::scene::Budget;
+use downpour::weather::Roots;
+use downpour::{Device, Renderer, RendererOptions, Source};
+
+/// Frames of rays that refine a plate.
+const KEPT_FRAMES: u32 = 4;
+
+fn live(c: &mut Criterion) {
+    let gpu = Gpu::open(&AdapterChoice::Auto).expect("a GPU or its software driver");
+    let size = if gpu.adapter().is_software() { [240, 135] } else { [1920, 1080] };
+    for name in ["day", "night"] {
+        let file = format!("../../assets/scenes/street/{name}.toml");
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+        // Where the program was carried without the sources, from the project's folder.
+        let path = if path.exists() { path } else { format!("assets/scenes/street/{name}.toml").into() };
+        let renderer = |kept_frames| {
+            let mut source = Source::read(&path, &[], &mut Budget::default()).expect("a weather");
+            source.weather.size = size;
+            let options = RendererOptions { samples: 1, kept_frames, ..RendererOptions::default() };
+            let device = Device::gpu(gpu.clone(), false);
+            Renderer::new(source.weather, source.loaded, options, device).expect("a renderer")
+        };
+        let mut group = c.benchmark_group(format!("live {name}"));
+        group.sample_size(10);
+        let mut time_s = 0.0;
+        let mut next_s = || {
+            time_s += 1.0 / 60.0;
+            time_s
+        };
+        let mut traced = renderer(0);
+        traced.frame(0.0).expect("a frame");
+        group.bench_function("frame", |b| b.iter(|| traced.frame(next_s()).expect("a frame")));
+        drop(traced);
+        let mut kept = renderer(KEPT_FRAMES);
+        for _ in 0..KEPT_FRAMES {
+            kept.frame(0.0).expect("a frame");
+        }
+        group.bench_function("kept", |b| b.iter(|| kept.frame(next_s()).expect("a frame")));
+        group.bench_function("display", |b| b.iter(|| kept.display(next_s()).expect("a frame")));
+        let shown = kept.display(next_s()).expect("a frame");
+        println!(
+            "live {name}: {} of {} drops, begun in {:.2} ms, whole {:.2} ms, {:?}",
+            shown.drops_drawn, shown.drops_simulated, shown.begin_ms, shown.frame_ms, shown.passes
+        );
+        let files = Roots::open(&path, &[]).expect("a folder");
+        let mut weather = kept.weather().clone();
+        group.bench_function(BenchmarkId::from_parameter("drag"), |b| {
+            b.iter(|| {
+                weather.rain.rate_mm_h = if weather.rain.rate_mm_h > 60.5 { 60.0 } else { 61.0 };
+                kept.set_weather(weather.clone(), &files).expect("a weather");
+                kept.display(next_s()).expect("a frame")
+            });
+        });
+        group.finish();
+    }
+}
+
+criterion_group!(benches, live);
+criterion_main!(benches);
