@@ -39,7 +39,7 @@ fn ground() -> String {
 const SCENE: &str = "\
 # A field in the rain, by hand.
 [rain]
-rate_mm_h = 40 # steady
+rate_mm_h = 200 # a cloudburst
 seed = 7
 
 [[model]]
@@ -75,7 +75,7 @@ fn view(folder: &Path, arguments: &[&str]) -> Output {
 
 fn script(folder: &Path, steps: &str) -> Output {
     fs::write(folder.join("steps.txt"), steps).unwrap();
-    let scale = ["--size", "900x600", "--scale", "0.25", "--backend", "cpu"];
+    let scale = ["--size", "900x600", "--scale", "0.4", "--backend", "cpu"];
     view(folder, &[&["field.toml", "--script", "steps.txt"], &scale[..]].concat())
 }
 
@@ -130,7 +130,7 @@ fn a_session_is_in_the_file_and_in_the_drops() {
             along += i32::from(drop.dot(air) > 0.3 * air.length_squared());
         }
     }
-    assert!(count > 50, "{count} drops in moving air");
+    assert!(count > 20, "{count} drops in moving air");
     assert!(f64::from(along) > 0.8 * f64::from(count), "{along} of {count}");
 }
 
