@@ -60,7 +60,7 @@ impl TonePipeline {
             ToneFrame { width, height, curve: tone_number(curve), exposure, has_glow, ..Default::default() };
         let frame = buffers.uniform("tone", &frame)?;
         let bytes = u64::from(width) * u64::from(height) * 4;
-        let target = buffers.buffer("picture to look at", bytes, wgpu::BufferUsages::STORAGE)?;
+        let target = buffers.buffer("display picture", bytes, wgpu::BufferUsages::STORAGE)?;
         // Without glow nothing is read there.
         let glow = layers.glow.unwrap_or(layers.rain);
         let bindings = self.kernel.bind(&self.gpu, &[&frame, layers.plate, layers.rain, glow, &target])?;
