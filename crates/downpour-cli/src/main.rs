@@ -53,8 +53,9 @@ fn main() -> ExitCode {
 }
 
 fn run() -> Result<(), Failure> {
-    let interrupt = Interrupt::install()?;
+    // First of all whether there is memory to work with: what catches signals is a thread, too.
     threads::start()?;
+    let interrupt = Interrupt::install()?;
     match Arguments::try_parse() {
         Ok(arguments) => arguments.command.run(&interrupt),
         Err(error) if error.use_stderr() => Err(Failure::from(&error)),

@@ -143,7 +143,8 @@ fn light_near(frame: &Frame, [from_s, to_s]: [f64; 2]) -> f64 {
                 continue;
             }
             let at = [middle[0] + focal * seen.x / -seen.z, middle[1] - focal * seen.y / -seen.z];
-            let radius = 0.6 * f64::from(drop.diameter) * focal / -seen.z + 1.5;
+            // The image of a lamp at the rim reaches out by a pixel.
+            let radius = 0.6 * f64::from(drop.diameter) * focal / -seen.z + 2.5;
             let first = at.map(|v| (v - radius).floor().max(0.0) as usize);
             let last = at.map(|v| (v + radius).ceil().max(0.0) as usize);
             for y in first[1]..last[1].min(height) {

@@ -86,11 +86,7 @@ impl Machine {
             parts
         } else {
             let frame = renderer.display(request.time_s)?;
-            // What is read back may be longer than the picture: buffers are used again.
-            let count = frame.size[0] as usize * frame.size[1] as usize;
-            let mut pixels: Vec<[u8; 3]> =
-                frame.pixels.iter().take(count).map(|&[r, g, b, _]| [r, g, b]).collect();
-            pixels.resize(count, [0; 3]);
+            let pixels: Vec<[u8; 3]> = frame.pixels.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
             (frame.size, pixels, frame.drops_drawn, frame.passes)
         };
         let stage = Arc::new(renderer.first_stage().clone());
