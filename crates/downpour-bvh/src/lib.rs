@@ -228,15 +228,15 @@ pub fn bvh_nearest(
     }
 }
 
-/// Corners, the lower first, of a box that holds all that lies in the box between `low` and `high` of those triangles that are `wanted`,
-/// and itself lies in it; `None` if that is nothing.
+/// Corners, the lower first, of a box that holds all that lies in the box between `low` and `high` of those triangles that are `wanted`
+/// (`None`: of all), and itself lies in it; `None` if that is nothing.
 #[must_use]
 pub fn bvh_bounds_within(
     nodes: &[BvhNode],
     triangles: &[BvhTriangle],
     low: [f32; 3],
     high: [f32; 3],
-    wanted: impl Fn(&BvhTriangle) -> bool,
+    wanted: Option<&dyn Fn(&BvhTriangle) -> bool>,
 ) -> Option<[[f32; 3]; 2]> {
     let whole = Bounds { low, high };
     let mut found = Bounds::NONE;
@@ -248,6 +248,10 @@ pub fn bvh_bounds_within(
         if found.common(&common) == Some(common) {
             continue;
         }
+        if node.count == 0 && wanted.is_none() && common == bounds {
+            found = found.union(bounds);
+            continue;
+        }
         if node.count == 0 {
             stack.extend([node.link as usize, node.link as usize + 1]);
             continue;
@@ -256,7 +260,7 @@ pub fn bvh_bounds_within(
             let [a, b, c] = triangle.corners();
             let bounds = Bounds::NONE.with(a).with(b).with(c);
             if let Some(common) = bounds.common(&whole)
-                && wanted(triangle)
+                && wanted.is_none_or(|wanted| wanted(triangle))
             {
                 found = found.union(common);
             }
@@ -484,7 +488,7 @@ mod tests {
             let b = rng_draw([7, 8], i, 1, 0).map(rng_unit);
             let low: [f32; 3] = std::array::from_fn(|k| a[k] * 5.0 - 0.5);
             let high: [f32; 3] = std::array::from_fn(|k| low[k] + b[k] * b[k]);
-            let found = bvh_bounds_within(&bvh.nodes, &bvh.triangles, low, high, |_| true);
+            let found = bvh_bounds_within(&bvh.nodes, &bvh.triangles, low, high, None);
             let mut expected = Bounds::NONE;
             for corners in bvh.triangles.iter().map(BvhTriangle::corners) {
                 let whole: [[f32; 2]; 3] = std::array::from_fn(|k| {
@@ -507,7 +511,7 @@ mod tests {
             }
         }
         assert!((20..380).contains(&empty), "{empty} empty boxes");
-        assert_eq!(bvh_bounds_within(&Bvh::new(&[]).nodes, &[], [-1.0; 3], [1.0; 3], |_| true), None);
+        assert_eq!(bvh_bounds_within(&Bvh::new(&[]).nodes, &[], [-1.0; 3], [1.0; 3], None), None);
     }
 
     /// Large triangles among small ones, as in a scene, do not end in large leaves.

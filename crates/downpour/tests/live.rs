@@ -163,12 +163,7 @@ fn stepped_rain_goes_on_in_another_wind() {
         .filter_map(|(id, a)| calm.get(id).map(|b| (0..3).map(|k| (a[k] - b[k]).abs()).sum()))
         .collect();
     let moved = both.iter().filter(|apart| **apart > 1.0e-3).count();
-    assert!(
-        both.len() >= 20 && moved * 2 > both.len(),
-        "{moved} of {} of {}",
-        both.len(),
-        calm.len()
-    );
+    assert!(both.len() >= 20 && moved * 2 > both.len(), "{moved} of {} of {}", both.len(), calm.len());
 }
 
 fn mean_difference(a: &Frame, b: &[[f32; 4]]) -> f32 {

@@ -44,8 +44,10 @@ fn drop(random: [u32; 4]) -> Vec<u32> {
     let (x, y) = (e - 0.5, f - 0.5 + 1.0e-3);
     let length = (x * x + y * y).sqrt();
     let along = [x / length, y / length];
-    // Every other one is a piece of a ridge.
-    let axis = if random[3] & 1 == 0 { [0.0; 2] } else { along.map(|c| 0.9e-3 * c) };
+    // Every other one is a piece of a ridge, which has no tail.
+    let is_piece = random[3] & 1 == 1;
+    let axis = if is_piece { along.map(|c| 0.9e-3 * c) } else { [0.0; 2] };
+    let behind = if is_piece { 1.0 } else { 0.4 + 0.6 * c };
     let lobe = |u: f32| 0.3 * u - 0.15;
     [
         0.01,
@@ -54,7 +56,7 @@ fn drop(random: [u32; 4]) -> Vec<u32> {
         radius * (1.05 + b),
         along[0],
         along[1],
-        0.4 + 0.6 * c,
+        behind,
         0.6 * d,
         -along[1],
         along[0],

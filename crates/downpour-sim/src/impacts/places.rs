@@ -30,7 +30,7 @@ pub(super) struct Places<'a> {
 fn is_level(triangle: &BvhTriangle, least: f32) -> bool {
     let normal = Vec3::from(triangle.edge_1).cross(triangle.edge_2.into());
     // A triangle of no area has no normal.
-    least <= 0.0 || normal.y.abs() >= least * normal.length()
+    normal.y.abs() >= least * normal.length()
 }
 
 impl<'a> Places<'a> {
@@ -91,10 +91,9 @@ impl<'a> Places<'a> {
             let whole = Bounds { low, high: low + edge };
             let [low, high] = [low - SLACK_M, low + edge + SLACK_M]
                 .map(|corner| (corner - obstacles.origin).as_vec3().to_array());
-            let [low, high] =
-                bvh_bounds_within(obstacles.nodes, obstacles.triangles, low, high, |triangle| {
-                    is_level(triangle, least)
-                })?
+            let level = |triangle: &BvhTriangle| is_level(triangle, least);
+            let wanted: Option<&dyn Fn(&BvhTriangle) -> bool> = if least > 0.0 { Some(&level) } else { None };
+            let [low, high] = bvh_bounds_within(obstacles.nodes, obstacles.triangles, low, high, wanted)?
                 .map(|corner| Vec3::from(corner).as_dvec3() + obstacles.origin);
             Bounds { low: low - SLACK_M, high: high + SLACK_M }.common(&whole)
         })
