@@ -109,7 +109,7 @@ fn a_flash_leaves_no_trace() {
 #[test]
 fn a_flash_lights_a_part_of_a_streak() {
     let camera =
-        "[camera]\nposition_m = [0, 1.6, 0]\nfov_deg = 12\nshutter_s = 0.05\n[output]\nsize = [240, 320]\n";
+        "[camera]\nposition_m = [0, 1.6, 0]\nfov_deg = 12\nshutter_s = 0.05\n[output]\nsize = [480, 640]\n";
     let rain = "[rain]\nrate_mm_h = 6\n";
     // 2 ms of light from 10 ms before the middle of the exposure on; and a control that shines all the time.
     let flash = "[[flash]]\ntime_s = 2.99\nazimuth_deg = -60\nelevation_deg = 25\nilluminance_lux = 9000\nrise_ms = 0\n\
@@ -118,15 +118,15 @@ fn a_flash_lights_a_part_of_a_streak() {
     let short = frame(&format!("{rain}{DARK}{camera}{flash}"), 3.0);
     let even = frame(&format!("{rain}{DARK}{camera}{long}"), 3.0);
     let whole = light_near(&short, [-0.01, -0.008]);
-    assert!(whole > 0.97, "{whole}");
+    assert!(whole > 0.98, "{whole}");
     // Streaks are not shorter either.
     let half = light_near(&short, [-0.01, -0.009]).max(light_near(&short, [-0.009, -0.008]));
     assert!(half < 0.9, "{half}");
     let control = light_near(&even, [-0.01, -0.008]);
-    assert!(control < 0.4, "{control}");
+    assert!(control < 0.5, "{control}");
 }
 
-/// Fraction of the light of a picture from 1.6 m height along -Z with 12 degrees of 320 rows that is near drops, between two times
+/// Fraction of the light of a picture from 1.6 m height along -Z with 12 degrees of height that is near drops, between two times
 /// relative to its own.
 fn light_near(frame: &Frame, [from_s, to_s]: [f64; 2]) -> f64 {
     let [width, height] = frame.size().map(|edge| edge as usize);
@@ -143,8 +143,7 @@ fn light_near(frame: &Frame, [from_s, to_s]: [f64; 2]) -> f64 {
                 continue;
             }
             let at = [middle[0] + focal * seen.x / -seen.z, middle[1] - focal * seen.y / -seen.z];
-            // The image of a lamp at the rim reaches out by a pixel.
-            let radius = 0.6 * f64::from(drop.diameter) * focal / -seen.z + 2.5;
+            let radius = 0.6 * f64::from(drop.diameter) * focal / -seen.z + 1.5;
             let first = at.map(|v| (v - radius).floor().max(0.0) as usize);
             let last = at.map(|v| (v + radius).ceil().max(0.0) as usize);
             for y in first[1]..last[1].min(height) {
