@@ -2,8 +2,6 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use std::path::Path;
-
 use downpour::Backend;
 use downpour_view::app::{App, AppOptions, Dialog};
 use downpour_view::document::Document;
@@ -14,6 +12,7 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use tempfile::TempDir;
 
 const TEXT: &str = "\
 # By hand.
@@ -31,8 +30,9 @@ vortex = { strength_m2_s = 40, center_m = [0, 1, 0], core_m = 2 }
 size = [320, 180]
 ";
 
-fn window(text: &str) -> Harness<'static, App> {
-    let document = Document::from_text("test.toml", text, Path::new("")).unwrap();
+/// A window on a text that is in no file; what it may write for recovery is in `folder`.
+fn window(folder: &TempDir, text: &str) -> Harness<'static, App> {
+    let document = Document::from_text("test.toml", text, folder.path()).unwrap();
     let device = DeviceChoice { backend: Backend::Cpu, adapter: None };
     let app = App::new(document, AppOptions { device, scale: Some(0.1), ..AppOptions::default() }).unwrap();
     let mut harness = Harness::builder()
@@ -47,7 +47,8 @@ fn window(text: &str) -> Harness<'static, App> {
 /// With the tab key alone the focus comes to menus, panels and the timeline.
 #[test]
 fn the_tab_key_reaches_every_part() {
-    let mut harness = window(TEXT);
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(&folder, TEXT);
     let mut reached = std::collections::BTreeSet::new();
     for _ in 0..80 {
         harness.key_press(Key::Tab);
@@ -64,7 +65,8 @@ fn the_tab_key_reaches_every_part() {
 /// Whatever takes the focus has a name to be read aloud.
 #[test]
 fn every_control_has_a_name() {
-    let mut harness = window(TEXT);
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(&folder, TEXT);
     harness.state_mut().select([ObjectId { list: "wind", index: 0 }]);
     harness.run_steps(3);
     let mut count = 0;
@@ -86,7 +88,8 @@ fn every_control_has_a_name() {
 /// A number that is typed changes the file and nothing else of it; undo brings the old one back.
 #[test]
 fn a_number_is_typed_into_the_panel() {
-    let mut harness = window(TEXT);
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(&folder, TEXT);
     harness.state_mut().select([ObjectId { list: "wind", index: 0 }]);
     harness.run_steps(3);
     harness.get_by_label("wind[0].vortex.strength_m2_s").set_value_accesskit(75.0);
@@ -105,7 +108,8 @@ fn an_edit_that_is_refused_is_explained() {
         "vortex = { strength_m2_s = 40, center_m = [0, 1, 0], core_m = 2 }",
         "uniform = { speed_m_s = 3, towards_deg = 0 }",
     );
-    let mut harness = window(&text);
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(&folder, &text);
     let path = downpour_view::key_path::KeyPath::parse("camera.near_m").unwrap();
     let far = downpour_view::plain::Plain::Number(9000.0);
     let error = harness.state_mut().set(&path, far).unwrap_err().to_string();
@@ -116,7 +120,8 @@ fn an_edit_that_is_refused_is_explained() {
 /// The shortcuts are listed under F1, and Escape closes the list.
 #[test]
 fn the_help_lists_the_shortcuts() {
-    let mut harness = window(TEXT);
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(&folder, TEXT);
     harness.key_press(Key::F1);
     harness.run_steps(3);
     assert_eq!(harness.state().dialog(), Some(&Dialog::Help));
@@ -129,7 +134,8 @@ fn the_help_lists_the_shortcuts() {
 /// A window with changes asks before it closes; without changes it does not.
 #[test]
 fn unsaved_changes_are_asked_about() {
-    let mut harness = window(TEXT);
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(&folder, TEXT);
     assert!(harness.state_mut().may_close());
     harness.state_mut().add("tornado", None).unwrap();
     assert!(!harness.state_mut().may_close());

@@ -1,0 +1,43 @@
+//! Drops that the CPU finds for a picture of the street at 1920x1080 whatever draws it: crowns of splashes, and droplets that rebound.
+
+use std::path::Path;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use downpour::Source;
+use downpour::scene::Budget;
+use downpour::shower::Shower;
+use downpour::trace::stage::Stage;
+
+fn impacts(c: &mut Criterion) {
+    for name in ["day", "storm"] {
+        let file = format!("../../assets/scenes/street/{name}.toml");
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+        // Where the program was carried without the sources, from the project's folder.
+        let path = if path.exists() { path } else { format!("assets/scenes/street/{name}.toml").into() };
+        let mut source = Source::read(&path, &[], &mut Budget::default()).expect("a weather");
+        source.weather.size = [1920, 1080];
+        let stage = Stage::new(&source.weather, &source.loaded, 0.0).expect("a stage");
+        let mut group = c.benchmark_group(format!("impacts {name}"));
+        group.sample_size(10);
+        let mut time_s = 0.0;
+        let mut next_s = || {
+            time_s += 1.0 / 60.0;
+            time_s
+        };
+        for part in ["none", "splashes", "droplets", "both"] {
+            let mut weather = source.weather.clone();
+            weather.splashes.is_enabled = matches!(part, "splashes" | "both");
+            if matches!(part, "none" | "splashes") {
+                weather.rain.bounce.fraction = 0.0;
+            }
+            let shower = Shower::new(&weather).expect("a rain");
+            let found = shower.view_at(&stage, next_s(), 1 << 22).expect("a view").expect("closed form");
+            println!("{name}, {part}: {} drops", found.droplets.len());
+            group.bench_function(part, |b| b.iter(|| shower.view_at(&stage, next_s(), 1 << 22)));
+        }
+        group.finish();
+    }
+}
+
+criterion_group!(benches, impacts);
+criterion_main!(benches);
