@@ -68,6 +68,7 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
         sim::collision::MODULES,
         sim::enter::MODULES,
         sim::field::MODULES,
+        sim::splash::MODULES,
         sim::step::MODULES,
         wind::MODULES,
     ]
@@ -97,6 +98,7 @@ pub fn kernels() -> impl Iterator<Item = &'static Kernel> {
         sim::collision::KERNELS,
         sim::enter::KERNELS,
         sim::field::KERNELS,
+        sim::splash::KERNELS,
         sim::step::KERNELS,
         wind::KERNELS,
     ]

@@ -3,4 +3,5 @@
 pub mod collision;
 pub mod enter;
 pub mod field;
+pub mod splash;
 pub mod step;

@@ -35,6 +35,7 @@ use downpour_sim::collision::{CollisionFrame, CollisionTexel};
 use downpour_sim::enter::EnterRegion;
 use downpour_sim::field::EyeDrop;
 use downpour_sim::field::frame::{FieldClass, FieldFrame, ShelterFrame};
+use downpour_sim::impacts::splash_frame::SplashFrame;
 use downpour_sim::step::{StepEvent, StepFrame};
 use downpour_sim::volume::{VolumeEye, VolumeFrustum};
 use downpour_specimen::gpu::{CameraUniform, LampUniform, SpecimenUniform, StreakUniform};
@@ -104,10 +105,13 @@ fn hosts() -> Vec<Host> {
             offset, diameter, velocity, id, present, speed, id_low),
         host!(FieldClass as "FieldClass" in &sim::field::FIELD,
             seed, edge, period, first_node, first_threshold, portions, first_column, columns, counts, eye_column,
-            eye_in_column, eye_periods, heights, drift, reach, middle, gauge, first_kept, least_units, kept_inverse, unused),
+            eye_in_column, eye_periods, heights, drift, reach, middle, gauge, first_kept, least_units, kept_inverse,
+            farthest, unused, shift, margin),
         host!(FieldFrame as "FieldFrame" in &sim::field::FIELD,
-            sides, swept, velocity, half_shutter, turning, nearest, per_diameter, farthest, seconds, fraction,
-            is_before, classes, columns, room, pane, first, begins, kept_row, unused),
+            sides, swept, velocity, half_shutter, turning, nearest, per_diameter, beyond, seconds, fraction,
+            is_before, classes, columns, room, pane, first, begins, kept_row, radius),
+        host!(SplashFrame as "SplashFrame" in &sim::splash::SPLASH,
+            sides, pane, eye, half_time, now, strength, radius, per_radius, farthest, drops, first, room),
         host!(ShelterFrame as "ShelterFrame" in &sim::field::SHELTER,
             eye, half_shutter, low, since_cut, high, cuts, room, first, unused_1, unused_2),
         host!(ProjectFrame as "ProjectFrame" in &render::rain::PROJECT,

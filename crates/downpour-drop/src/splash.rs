@@ -17,7 +17,7 @@
 pub mod crown;
 
 use downpour_math::in_range;
-use downpour_shaders::render::rain::PROJECT_SPLASH_RISE;
+use downpour_shaders::sim::splash::{SPLASH_RISE_SHARE, SPLASH_RISE_TIMES};
 
 use crate::{DropError, water};
 
@@ -25,10 +25,10 @@ use crate::{DropError, water};
 pub const THRESHOLD: f64 = 57.7;
 
 /// Time at which a crown is highest, in drop diameters over the drop's speed.
-pub const RISE_TIMES: f64 = 12.0;
+pub const RISE_TIMES: f64 = SPLASH_RISE_TIMES as f64;
 
 /// Fraction of a crown's duration in which it rises.
-pub const RISE_SHARE: f64 = PROJECT_SPLASH_RISE as f64;
+pub const RISE_SHARE: f64 = SPLASH_RISE_SHARE as f64;
 
 /// Depth of the film on a surface in rain, in m.
 pub const FILM_M: f64 = 0.5e-3;
@@ -80,6 +80,18 @@ impl SplashLaw {
         let weber = self.density * speed_m_s * speed_m_s * diameter_m / self.surface_tension;
         let reynolds = self.density * speed_m_s * diameter_m / self.viscosity;
         weber.sqrt() * reynolds.sqrt().sqrt()
+    }
+
+    /// Splash parameter of a drop of 1 m at 1 m/s.
+    #[must_use]
+    pub fn strength(&self) -> f64 {
+        self.parameter(1.0, 1.0)
+    }
+
+    /// Radius, m, of the highest crown of a drop of 1 m: that of others goes as the diameter to the power of 5/4.
+    #[must_use]
+    pub fn unit_radius(&self) -> f64 {
+        self.radius(1.0, 1.0, RISE_TIMES)
     }
 
     /// Splash of a drop of a diameter in m that meets a surface with a speed toward it in m/s; `None` if it does not splash.

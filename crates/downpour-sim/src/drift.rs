@@ -41,6 +41,12 @@ impl Drift {
         Self { table: (0..=INTERVALS).map(entry).collect() }
     }
 
+    /// The straight motion from a time to one `lasts_s` later, as it is in the middle between the two.
+    pub(crate) fn chord(from: &Self, to: &Self, lasts_s: f64) -> Self {
+        let entry = |(a, b): (&[DVec3; 2], &[DVec3; 2])| [a[0].midpoint(b[0]), (b[0] - a[0]) / lasts_s];
+        Self { table: from.table.iter().zip(&to.table).map(entry).collect() }
+    }
+
     /// Displacements and velocities by terminal speed, from 0 to 12 m/s.
     #[cfg(feature = "wgpu")]
     pub(crate) fn entries(&self) -> impl Iterator<Item = &[DVec3; 2]> {

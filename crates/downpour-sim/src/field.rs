@@ -29,6 +29,7 @@ pub mod chain;
 #[cfg(feature = "wgpu")]
 #[doc(hidden)]
 pub mod frame;
+mod reach;
 mod room;
 #[doc(hidden)]
 pub mod thinning;
@@ -38,7 +39,7 @@ use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_math::rng::{rng_draw, rng_pcg4d, seed_words};
 use downpour_math::{OutOfRange, in_range};
 use downpour_shaders::sim::field::{
-    FIELD_CHAIN, FIELD_DIAMETER_STEP, FIELD_PLACE, FIELD_RADIUS, FIELD_RATE_STEP, FIELD_THIN,
+    FIELD_CHAIN, FIELD_DIAMETER_STEP, FIELD_PLACE, FIELD_RATE_STEP, FIELD_THIN,
 };
 use downpour_wind::{Keyed, UniformWind, Wind};
 use glam::{DVec3, Vec3};
@@ -46,6 +47,7 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 use self::chain::{ChainCount, ChainSizes, FieldTime, field_fallen};
+pub(crate) use self::reach::Reach;
 use self::thinning::Thinning;
 use crate::SimError;
 use crate::drift::Drift;
@@ -223,7 +225,8 @@ impl RainField {
             if range < view.near {
                 continue;
             }
-            let (found, tried) = self.visible_of(class, view, least_pixels, time_s, &drift);
+            let reach = Reach::of_view(view, least_pixels);
+            let (found, tried) = self.visible_of(class, view, &reach, time_s, &drift, |drop, _| Some(drop));
             drops.extend(found);
             simulated += tried;
         }
@@ -321,44 +324,41 @@ impl RainField {
         least
     }
 
-    fn visible_of(
+    /// What `make` makes of the drops of a class that a picture shows or that a search is for, with their terminal speeds; and how many
+    /// were looked at.
+    pub(crate) fn visible_of<T: Send>(
         &self,
         class: &Class,
         view: &View,
-        least_pixels: f64,
+        reach: &Reach,
         time_s: f64,
         drift: &Drift,
-    ) -> (Vec<FallingDrop>, u64) {
-        let range = view.range(class.largest, least_pixels);
+        make: impl Fn(FallingDrop, f64) -> Option<T> + Sync,
+    ) -> (Vec<T>, u64) {
         let sides = view.sides();
         let swept = view.swept_sides();
-        let margin = class.half_way(view, drift) + f64::from(FIELD_RADIUS) * class.largest;
-        let bounds = view.bounds(range, margin);
-        let [xs, zs] = class.columns(&bounds, drift);
-        let [least, most] = drift.span(class.speeds[0], class.speeds[1]);
-        let (carried, spread) = (least.midpoint(most), 0.5 * (most - least).length());
-        let middle = (bounds.low.y + bounds.high.y) * 0.5;
-        let half = (bounds.high.y - bounds.low.y) * 0.5;
-        let radius = (0.5 * class.edge * class.edge + half * half).sqrt() + spread;
-        let rows: Vec<(Vec<FallingDrop>, u64)> = xs
+        let Some(seen) = class.seen(view, reach, drift) else { return (Vec::new(), 0) };
+        let [xs, zs] = class.columns(&seen.bounds, drift);
+        let rows: Vec<(Vec<T>, u64)> = xs
             .into_par_iter()
             .map(|ix| {
                 let (mut found, mut tried) = (Vec::new(), 0);
                 for iz in zs.clone() {
-                    let x = (ix as f64 + 0.5) * class.edge + carried.x;
-                    let z = (iz as f64 + 0.5) * class.edge + carried.z;
-                    if !within(&swept, DVec3::new(x, middle, z) - view.eye, radius + margin) {
+                    let x = (ix as f64 + 0.5) * class.edge;
+                    let z = (iz as f64 + 0.5) * class.edge;
+                    let middle = DVec3::new(x, 0.0, z) + seen.middle;
+                    if !within(&swept, middle - view.eye, seen.radius) {
                         continue;
                     }
-                    self.drops_of_column(class, [ix, iz], &bounds, time_s, drift, |drop, _| {
+                    self.drops_of_column(class, [ix, iz], &seen.bounds, time_s, drift, |drop, speed| {
                         tried += 1;
                         let diameter = f64::from(drop.diameter);
-                        let range = view.range(diameter, least_pixels);
                         let velocity = Vec3::from(drop.velocity).as_dvec3();
-                        let radius = f64::from(FIELD_RADIUS) * diameter;
+                        let (range, radius) = (reach.range(diameter), reach.radius(diameter));
                         let all = [f64::NEG_INFINITY, f64::INFINITY];
-                        if view.shows(&sides, drop.position, velocity, radius, range, all) {
-                            found.push(drop);
+                        let at = drop.position + reach.shift;
+                        if view.shows(&sides, at, velocity, radius, range, all) {
+                            found.extend(make(drop, speed));
                         }
                     });
                 }
@@ -430,9 +430,34 @@ impl RainField {
     }
 }
 
+/// Part of the columns of a class in which a search may find drops.
+pub(crate) struct SeenColumns {
+    /// Bounds of the drops.
+    pub(crate) bounds: Bounds,
+    /// From the middle of a column at height 0 to the middle of what is seen of this part of it, m.
+    pub(crate) middle: DVec3,
+    /// Radius around that, with all margins, m.
+    pub(crate) radius: f64,
+}
+
 impl Class {
+    /// Part of its columns in which a search may find drops, if there is any.
+    pub(crate) fn seen(&self, view: &View, reach: &Reach, drift: &Drift) -> Option<SeenColumns> {
+        let margin = self.half_way(view, drift) + reach.radius(self.largest);
+        let seen = view.bounds(reach.range(self.largest), margin);
+        let seen = Bounds { low: seen.low - reach.shift, high: seen.high - reach.shift };
+        let bounds = seen.common(&reach.within)?;
+        let [least, most] = drift.span(self.speeds[0], self.speeds[1]);
+        let (carried, spread) = (least.midpoint(most), 0.5 * (most - least).length());
+        let height = (bounds.low.y + bounds.high.y) * 0.5;
+        let half = (bounds.high.y - bounds.low.y) * 0.5;
+        let radius = (0.5 * self.edge * self.edge + half * half).sqrt() + spread;
+        let middle = DVec3::new(carried.x, height, carried.z) + reach.shift;
+        Some(SeenColumns { bounds, middle, radius: radius + margin })
+    }
+
     /// Maximum distance, m, that a drop moves relative to the eye in half the exposure.
-    fn half_way(&self, view: &View, drift: &Drift) -> f64 {
+    pub(crate) fn half_way(&self, view: &View, drift: &Drift) -> f64 {
         let [slow, fast] = self.speeds;
         let way = |speed: f64| view.half_way(drift.of(speed)[1] - DVec3::Y * speed);
         // Between the speeds of the table the velocity is linear, and nearly so over a class.

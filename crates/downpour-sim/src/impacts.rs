@@ -26,6 +26,11 @@
 
 mod bounced;
 mod places;
+#[cfg(feature = "wgpu")]
+pub(crate) mod slices;
+#[cfg(feature = "wgpu")]
+#[doc(hidden)]
+pub mod splash_frame;
 mod splashes;
 mod ways;
 

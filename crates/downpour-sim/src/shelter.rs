@@ -26,7 +26,7 @@ use crate::falling::FallingDrop;
 pub(crate) const CUT_S: f64 = SHELTER_CUT as f64;
 
 /// Maximum time for which a path is followed back, s; slower drops count as coming from the sky.
-const MAX_BACK_S: f64 = 120.0;
+pub(crate) const MAX_BACK_S: f64 = 120.0;
 
 /// Distance from a surface below which a drop counts as on it, m.
 const CLEAR_M: f32 = SHELTER_CLEAR;
@@ -48,6 +48,14 @@ pub struct Obstacles<'a> {
     pub holes: Option<&'a dyn Holes>,
     /// Origin, m.
     pub origin: DVec3,
+}
+
+impl Obstacles<'_> {
+    /// Corners of the box around all of them, m, relative to their origin; `None` without obstacles.
+    pub(crate) fn corners(&self) -> Option<[Vec3; 2]> {
+        let root = self.nodes.first().filter(|_| !self.triangles.is_empty())?;
+        Some([root.low.into(), root.high.into()])
+    }
 }
 
 /// Paths of drops from the sky up to a time.
@@ -74,8 +82,7 @@ impl<'a> SkyPaths<'a> {
         slowest: f64,
         deepest: f64,
     ) -> Option<Self> {
-        let root = obstacles.nodes.first().filter(|_| !obstacles.triangles.is_empty())?;
-        let (low, high) = (Vec3::from(root.low), Vec3::from(root.high));
+        let [low, high] = obstacles.corners()?;
         let last_cut_s = (open_s / CUT_S).floor() * CUT_S;
         let cuts = number_of_cuts(wind, f64::from(high.y) - deepest, slowest);
         let cut = |k: usize| Drift::new(wind, last_cut_s - k as f64 * CUT_S);

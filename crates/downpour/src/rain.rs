@@ -217,6 +217,7 @@ impl Rain {
             max_room: self.most_drops,
             pane: None,
             known: &[],
+            splashes: None,
         };
         let found = self.fields.prepare(&self.pool, on_gpu, &obstacles, &search)?;
         let medium = self.medium(found.resolved())?;

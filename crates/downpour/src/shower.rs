@@ -48,8 +48,10 @@ pub struct ShowerView {
     pub resolved: Resolved,
     /// The pane before the eye: there is no rain on the eye's side.
     pub pane: Option<PanePlane>,
-    /// Droplets that rebound, drops that drip, and splashes, in the world: these are found already.
+    /// Droplets that rebound, drops that drip, and splashes unless the device finds them, in the world: these are found already.
     pub droplets: Vec<FallingDrop>,
+    /// Splashes that the device is to find.
+    pub splashes: Option<SplashOptions>,
 }
 
 /// The rain of a weather.
@@ -213,14 +215,17 @@ impl Shower {
         let obstacles = obstacles(stage);
         let mut droplets = field.bounced(&obstacles, &view, least, time_s, &self.bounce)?;
         droplets.extend(self.drips(stage, &view, least, time_s)?);
-        if let Some(splashes) = &self.splashes {
+        let on_device =
+            self.splashes.filter(|options| crowns_on_device(options, field, stage, &view, time_s));
+        if let (Some(splashes), None) = (&self.splashes, on_device) {
             droplets.extend(field.splashes(&obstacles, &view, time_s, splashes)?);
         }
         let pane = pane_plane(&self.weather, &stage.viewpoint)?;
         if let Some(pane) = &pane {
             keep_outside(&mut droplets, pane, view.eye);
         }
-        Ok(Some(ShowerView { field: Arc::clone(field), time_s, view, resolved, pane, droplets }))
+        let field = Arc::clone(field);
+        Ok(Some(ShowerView { field, time_s, view, resolved, pane, droplets, splashes: on_device }))
     }
 
     /// The wind that the drops feel at a time in seconds, in its cells and relative to the stage's origin: none blows in
@@ -281,6 +286,26 @@ impl Shower {
             Form::Stepped(stepped) => Ok(stepped.measured_rate_mm_h()),
         }
     }
+}
+
+/// True if a GPU is to find the crowns of splashes.
+#[cfg(feature = "wgpu")]
+fn crowns_on_device(
+    options: &SplashOptions,
+    field: &RainField,
+    stage: &Stage,
+    view: &View,
+    time_s: f64,
+) -> bool {
+    let root = stage.data.nodes.first();
+    let corners = root.map(|root| [root.low, root.high].map(glam::Vec3::from));
+    corners.is_some_and(|corners| options.fits_device(field, view, time_s, corners, stage.origin))
+}
+
+/// True if a GPU is to find the crowns of splashes: there is none.
+#[cfg(not(feature = "wgpu"))]
+fn crowns_on_device(_: &SplashOptions, _: &RainField, _: &Stage, _: &View, _: f64) -> bool {
+    false
 }
 
 /// What stops drops in a scene.

@@ -9,6 +9,7 @@ use crate::drop::oscillation::OSCILLATION;
 use crate::drop::shape::SHAPE;
 use crate::mask::WOBBLE;
 use crate::sim::field::EYE_DROP;
+use crate::sim::splash::SPLASH_CONSTANTS;
 use crate::{Kernel, Module};
 
 /// Every module of this file.
@@ -83,8 +84,6 @@ shared_constants! {
         PROJECT_SPLASHES: u32 = 8;
         /// The stage of them at which it is highest.
         PROJECT_SPLASH_TOP: f32 = 3.0;
-        /// Fraction of its duration in which it rises.
-        PROJECT_SPLASH_RISE: f32 = 0.125;
         /// Rows of the masks: of the diameters and of the splashes.
         PROJECT_ROWS: u32 = 26;
         /// Drops whose path is shorter than this fraction of their radius stand still.
@@ -427,6 +426,7 @@ pub static PROJECT: Module = Module {
         &INVOCATION,
         &OPS,
         &EYE_DROP,
+        &SPLASH_CONSTANTS,
         &RAIN_CONSTANTS,
         &PROJECT_TABLES,
         &CAMERA,

@@ -236,8 +236,8 @@ fn project_lookup(diameter: f32, elevation: f32) -> ProjectMask {
 // Position among the masks of a splash that is seen from `elevation` radians above it, at the picture's time.
 fn project_splash(present: vec2f, elevation: f32) -> ProjectMask {
     let stage = clamp(-present.x / max(present.y - present.x, 1.0e-9), 0.0, 1.0);
-    let rise = PROJECT_SPLASH_TOP * min(stage / PROJECT_SPLASH_RISE, 1.0);
-    let fall = max(stage - PROJECT_SPLASH_RISE, 0.0) / (1.0 - PROJECT_SPLASH_RISE);
+    let rise = PROJECT_SPLASH_TOP * min(stage / SPLASH_RISE_SHARE, 1.0);
+    let fall = max(stage - SPLASH_RISE_SHARE, 0.0) / (1.0 - SPLASH_RISE_SHARE);
     let row = rise + (f32(PROJECT_SPLASHES - 1u) - PROJECT_SPLASH_TOP) * fall;
     let turned = elevation / STREAK_QUARTER * f32(DROPS_ELEVATIONS - 1u);
     return project_mask(vec2f(

@@ -39,7 +39,12 @@ struct FieldClass {
     first_kept: u32,
     least_units: u32,
     kept_inverse: u32,
-    unused: u32,
+    // Largest distance of a drop of the class, m.
+    farthest: f32,
+    unused: vec2u,
+    // Way from a drop to what is seen, m, and by how much that is larger than so many diameters, m.
+    shift: vec3f,
+    margin: f32,
 }
 
 struct FieldFrame {
@@ -54,9 +59,9 @@ struct FieldFrame {
     turning: vec3f,
     // Least distance of a drop, m.
     nearest: f32,
-    // Distance up to which a drop is resolved: by its diameter, and in any case, m.
+    // Distance up to which a drop is searched for: by its diameter, and so much more, m.
     per_diameter: f32,
-    farthest: f32,
+    beyond: f32,
     // Time (FieldTime).
     seconds: u32,
     fraction: u32,
@@ -72,7 +77,8 @@ struct FieldFrame {
     // Of a rate that changes, the times at which rows of the parts that fall begin, and the length of a row; 0: all drops fall.
     begins: u32,
     kept_row: u32,
-    unused: u32,
+    // Radius of what is seen, in diameters.
+    radius: f32,
 }
 
 @group(0) @binding(0) var<uniform> field_frame: FieldFrame;
@@ -232,11 +238,13 @@ fn field_carried(speed: f32) -> FieldCarried {
     return FieldCarried(drift, wind);
 }
 
-// True if the path of a drop touches the picture, it is between the least distance and that at which it is resolved, and beyond the
-// pane if there is one.
-fn field_shows(drop: EyeDrop) -> bool {
+// True if the path of what is seen touches the picture, it is between the least distance and that up to which drops are searched for,
+// and beyond the pane if there is one.
+fn field_shows(seen: EyeDrop, kind: FieldClass) -> bool {
+    var drop = seen;
+    drop.offset += kind.shift;
     let distance = sqrt(dot(drop.offset, drop.offset));
-    let range = min(drop.diameter * field_frame.per_diameter, field_frame.farthest);
+    let range = min(drop.diameter * field_frame.per_diameter + field_frame.beyond, kind.farthest);
     if distance < field_frame.nearest || distance > range {
         return false;
     }
@@ -246,7 +254,7 @@ fn field_shows(drop: EyeDrop) -> bool {
     let half_time = field_frame.half_shutter;
     let begin = eye_drop_position(drop, field_frame.velocity, field_frame.turning, -half_time);
     let end = eye_drop_position(drop, field_frame.velocity, field_frame.turning, half_time);
-    let radius = FIELD_RADIUS * drop.diameter;
+    let radius = field_frame.radius * drop.diameter + kind.margin;
     for (var k = 0u; k < FIELD_SIDES; k += 1u) {
         let side = field_frame.sides[k].xyz;
         if min(dot(side, begin), dot(side, end)) > radius {
@@ -297,7 +305,7 @@ fn field_chain(kind: FieldClass, column: vec2i, key: vec2u, index: u32) {
             place.w,
         );
         atomicAdd(&field_found[1], 1u);
-        if field_shows(drop) {
+        if field_shows(drop, kind) {
             let slot = atomicAdd(&field_found[0], 1u);
             if slot < field_frame.room {
                 field_drops[field_frame.first + slot] = drop;

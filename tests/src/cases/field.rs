@@ -1,20 +1,25 @@
-//! `shaders/wgsl/sim/{field,shelter,shelter_hit}.wgsl` against `downpour_sim::field` and `downpour_sim::shelter`.
+//! `shaders/wgsl/sim/{field,shelter,shelter_hit,splash}.wgsl` against `downpour_sim::field`, `shelter` and `impacts`.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
+use downpour_drop::splash::{FILM_M, SplashLaw};
 use downpour_gpu::{BufferPool, Gpu, GpuError};
 use downpour_math::rng::rng_pcg4d;
 use downpour_render::camera::Viewpoint;
 use downpour_shaders::Kernel;
 use downpour_shaders::render::scene::{SCENE_DOUBLE_SIDED, SCENE_MASKED};
+use downpour_shaders::sim::field::FIELD_SPLASH;
 use downpour_shaders::sim::field::{
     DRIFT, EYE_DROP, FIELD, FIELD_CLEAR_KERNEL, FIELD_FIND_KERNEL, SHELTER_AMONG_HOLES_KERNEL, SHELTER_KERNEL,
 };
+use downpour_shaders::sim::splash::{SPLASH, SPLASH_KERNEL};
 use downpour_sim::field::chain::{FieldTime, field_between, field_fallen, field_fraction, field_part};
 use downpour_sim::field::thinning::{field_interval, field_is_below, field_less};
 use downpour_sim::field::{EyeDrop, FallingDrop, RainField, drift_position, eye_drop_turned};
 use downpour_sim::gpu::{FieldPipeline, FieldSearch, GpuSimError, HolesOnGpu, ObstaclesOnGpu};
+use downpour_sim::impacts::SplashOptions;
+use downpour_sim::impacts::splash_frame::{splash_middle, splash_parameter};
 use downpour_sim::shelter::{Holes, Obstacles};
 use downpour_sim::view::View;
 use downpour_trace::builder::{MeshPart, SceneBuilder};
@@ -100,6 +105,20 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new("field_is_below", &FIELD, &[Made(near), Made(near)], exact, |a| {
             u32::from(field_is_below(a.u32s(), a.u32s())).words()
         }),
+        FunctionCase::new(
+            "splash_parameter",
+            &SPLASH,
+            &[Uniform(1.0e5, 1.0e7), Uniform(1.0e-4, 6.0e-3), Uniform(0.1, 12.0)],
+            Tol::relative(4.0e-6, 0.0, "four square roots and three products"),
+            |a| splash_parameter(a.f32(), a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "splash_middle",
+            &SPLASH,
+            &[Uniform(0.0, 1.0)],
+            Tol::absolute(1.0e-6, "a few products below 1"),
+            |a| splash_middle(a.f32()).words(),
+        ),
         FunctionCase::new("field_interval", &FIELD, &[Made(number), Made(number)], exact, |a| {
             field_interval(a.u32(), a.u32()).words()
         }),
@@ -186,7 +205,15 @@ fn key(drop: &EyeDrop) -> (u32, u32) {
     (drop.id, drop.diameter.to_bits())
 }
 
-fn found(gpu: &Gpu, kind: Kind) -> Result<Found, GpuError> {
+/// A rain before a scene.
+struct Setting {
+    field: RainField,
+    view: View,
+    scene: SceneData,
+    origin: DVec3,
+}
+
+fn setting(kind: Kind) -> Setting {
     let sizes = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 60.0).expect("a rain");
     let field = if kind.changes {
         let rates = Keyed::new(vec![(-4.0, 60.0), (7.0, 60.0), (8.0, 0.0), (9.0, 25.0), (1.0e6, 60.0)]);
@@ -205,6 +232,11 @@ fn found(gpu: &Gpu, kind: Kind) -> Result<Found, GpuError> {
         ..View::default()
     };
     let scene = obstacles(kind.has_holes);
+    Setting { field, view, scene, origin }
+}
+
+fn found(gpu: &Gpu, kind: Kind) -> Result<Found, GpuError> {
+    let Setting { field, view, scene, origin } = setting(kind);
     let holes = kind.has_holes.then_some(&scene as &dyn Holes);
     let on_cpu = Obstacles { nodes: &scene.nodes, triangles: &scene.triangles, holes, origin };
     let [x, y, z, distance] = kind.pane.unwrap_or_default();
@@ -232,14 +264,26 @@ fn found(gpu: &Gpu, kind: Kind) -> Result<Found, GpuError> {
     // What a picture with more drops leaves in the same buffers must not show.
     let (pool, most) = (BufferPool::new(gpu), 1 << 20);
     let more = View { far: 16.0, velocity: DVec3::ZERO, ..view };
-    let search =
-        FieldSearch { view: &more, time_s: kind.time_s + 0.3, max_room: most, pane: None, known: &[] };
+    let search = FieldSearch {
+        view: &more,
+        time_s: kind.time_s + 0.3,
+        max_room: most,
+        pane: None,
+        known: &[],
+        splashes: None,
+    };
     let before = pipeline.prepare(&pool, (&field, &mut on_gpu), &obstacles, &search).map_err(of_gpu)?;
     gpu.submit(&before.dispatches())?;
     pool.begin_frame();
     let known = known();
-    let search =
-        FieldSearch { view: &view, time_s: kind.time_s, max_room: most, pane: kind.pane, known: &known };
+    let search = FieldSearch {
+        view: &view,
+        time_s: kind.time_s,
+        max_room: most,
+        pane: kind.pane,
+        known: &known,
+        splashes: None,
+    };
     let pass = pipeline.prepare(&pool, (&field, &mut on_gpu), &obstacles, &search).map_err(of_gpu)?;
     gpu.submit(&pass.dispatches())?;
     let (mut drops, [found, tried]) = pass.read()?;
@@ -320,6 +364,69 @@ fn landing_case(gpu: &Gpu, kind: Kind) -> Result<Run, GpuError> {
     Ok(run(1, side(0), side(1)))
 }
 
+/// Crowns of splashes on the floor and on the roof, as both sides list them.
+fn crowns_case(gpu: &Gpu, kind: Kind) -> Result<Run, GpuError> {
+    let Setting { field, view, scene, origin } = setting(kind);
+    // A crown of three pixels is as far away as the picture shows.
+    let view = View { pixel_angle: 4.0e-4, ..view };
+    let options = SplashOptions { law: SplashLaw::new(FILM_M, 20.0).expect("a law"), size: 1.5 };
+    let holes = kind.has_holes.then_some(&scene as &dyn Holes);
+    let on_cpu = Obstacles { nodes: &scene.nodes, triangles: &scene.triangles, holes, origin };
+    let [x, y, z, distance] = kind.pane.unwrap_or_default();
+    let is_outside = |drop: &EyeDrop| Vec3::new(x, y, z).dot(drop.offset.into()) >= distance;
+    let crowns = field.splashes(&on_cpu, &view, kind.time_s, &options).expect("in range");
+    let expected: Vec<EyeDrop> =
+        crowns.iter().map(|drop| EyeDrop::new(drop, view.eye)).filter(is_outside).collect();
+    assert!(expected.len() > 300, "{} crowns", expected.len());
+    let root = scene.nodes[0];
+    let viewpoint = Viewpoint { eye: Vec3::ZERO, forward: Vec3::NEG_Z, up: Vec3::Y, fov_y: 0.9 };
+    let frame = RenderFrame::new(&scene, &viewpoint, [8, 8], 1, 0, 0).expect("a frame");
+    let lighting = ScenePipeline::new(gpu)?.upload(&scene)?.lighting(gpu, &frame)?;
+    let [_, nodes, triangles, corners, table, texels] = &lighting.buffers;
+    let bounds = Some([Vec3::from(root.low), Vec3::from(root.high)]);
+    let holes = kind.has_holes.then_some(HolesOnGpu { corners, table, texels });
+    let obstacles = ObstaclesOnGpu { nodes, triangles, holes, bounds, origin };
+    let pipeline = FieldPipeline::new(gpu)?;
+    let mut on_gpu = pipeline.upload(&field)?;
+    let search = FieldSearch {
+        view: &view,
+        time_s: kind.time_s,
+        max_room: 1 << 20,
+        pane: kind.pane,
+        known: &[],
+        splashes: Some(&options),
+    };
+    let pool = BufferPool::new(gpu);
+    let pass = pipeline.prepare(&pool, (&field, &mut on_gpu), &obstacles, &search);
+    let pass = pass.map_err(|error| match error {
+        GpuSimError::Gpu(error) => error,
+        other => panic!("{other}"),
+    })?;
+    gpu.submit(&pass.dispatches())?;
+    let (drops, [found, _]) = pass.read()?;
+    assert!(found <= pass.room(), "{found} have no room");
+    let crowns = drops.iter().filter(|drop| drop.speed == FIELD_SPLASH);
+    let mut others: BTreeMap<(u32, u32), EyeDrop> =
+        crowns.map(|drop| ((drop.id, drop.id_low), *drop)).collect();
+    let words = |drop: &EyeDrop| {
+        let [x, y, z] = drop.offset;
+        let [begin, end] = drop.present;
+        [1.0, x, y, z, drop.diameter * 10.0, begin, end].map(f32::to_bits)
+    };
+    let nothing = [0.0f32; 7].map(f32::to_bits);
+    let (mut cpu, mut gpu_words) = (Vec::new(), Vec::new());
+    for drop in &expected {
+        cpu.extend(words(drop));
+        gpu_words.extend(others.remove(&(drop.id, drop.id_low)).as_ref().map_or(nothing, words));
+    }
+    // What only the device has.
+    for drop in others.values() {
+        cpu.extend(nothing);
+        gpu_words.extend(words(drop));
+    }
+    Ok(run(7, cpu, gpu_words))
+}
+
 fn steady() -> UniformWind {
     uniform(&Keyed::from(6.0), None)
 }
@@ -337,6 +444,7 @@ fn still() -> UniformWind {
 #[must_use]
 pub(super) fn kernels() -> Vec<KernelCase> {
     const OTHERS: &[&Kernel] = &[&FIELD_CLEAR_KERNEL, &SHELTER_KERNEL];
+    const OF_CROWNS: &[&Kernel] = &[&FIELD_CLEAR_KERNEL, &FIELD_FIND_KERNEL, &SHELTER_KERNEL];
     let of = |name, run| KernelCase {
         name,
         kernel: &FIELD_FIND_KERNEL,
@@ -352,6 +460,13 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         let tol =
             Tol::absolute(0.02, "flags, and ms of drops that meet a plane; paths at an edge may differ");
         KernelCase::new(name, kernel, tol.with_outliers(4.0e-3), run)
+    };
+    let crowns = |name, wander: f64, run: fn(&Gpu) -> Result<Run, GpuError>| {
+        let tol = Tol::absolute(wander, "meters and seconds; crowns at an edge, and at the ends of slices");
+        KernelCase {
+            with: OF_CROWNS,
+            ..KernelCase::new(name, &SPLASH_KERNEL, tol.with_outliers(6.0e-3), run)
+        }
     };
     let shelter = |name, run| among(&SHELTER_KERNEL, name, run);
     let leaves = |name, run| among(&SHELTER_AMONG_HOLES_KERNEL, name, run);
@@ -381,6 +496,15 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         }),
         leaves("main_shelter: holes, landing", |gpu| {
             landing_case(gpu, Kind { has_holes: true, ..kind(gusty, 11.3, 0.1) })
+        }),
+        crowns("main_splash: steady wind", 1.0e-4, |gpu| {
+            crowns_case(gpu, Kind { far: true, ..kind(steady, 7.125, 1.0 / 60.0) })
+        }),
+        // Paths are straight in other spans of time.
+        crowns("main_splash: gusts", 4.0e-3, |gpu| crowns_case(gpu, kind(gusty, 11.3, 1.0 / 60.0))),
+        crowns("main_splash: holes, behind a pane", 1.0e-4, |gpu| {
+            let pane = Some([0.0, 0.6, -0.8, 0.5]);
+            crowns_case(gpu, Kind { has_holes: true, pane, ..kind(steady, 3.3, 1.0 / 60.0) })
         }),
     ]
 }

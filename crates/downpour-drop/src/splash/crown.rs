@@ -9,6 +9,7 @@
 
 use downpour_math::ops::f64 as ops;
 use downpour_math::rng::{rng_draw, rng_unit};
+use downpour_shaders::sim::splash::{SPLASH_FINGERS, SPLASH_WALL};
 use std::f64::consts::{PI, TAU};
 
 use super::RISE_SHARE;
@@ -23,7 +24,7 @@ const AROUND: u32 = 130;
 const SECTION: u32 = 18;
 
 /// Heights of the wall and of the fingers above it, at most.
-const HEIGHTS: [f64; 2] = [0.42, 0.34];
+const HEIGHTS: [f64; 2] = [SPLASH_WALL as f64, SPLASH_FINGERS as f64];
 
 /// Depth to which the wall reaches below the surface.
 const ROOT: f64 = 0.03;

@@ -18,8 +18,9 @@ use downpour_mask::{
 use downpour_math::packing::{packing_octahedral_encode, packing_pack_snorm, packing_pack_unorm};
 use downpour_shaders::render::rain::{
     DROPS_ELEVATIONS, DROPS_TEXEL_WORDS, PROFILES_SHAPE_WORDS, PROFILES_SHAPES, PROFILES_SHAPES_BEGIN,
-    PROJECT_DIAMETERS, PROJECT_ROWS, PROJECT_SPLASH_RISE, PROJECT_SPLASH_TOP, PROJECT_SPLASHES,
+    PROJECT_DIAMETERS, PROJECT_ROWS, PROJECT_SPLASH_TOP, PROJECT_SPLASHES,
 };
+use downpour_shaders::sim::splash::SPLASH_RISE_SHARE;
 
 use super::drops_atlas;
 use super::light::DropLightTable;
@@ -268,8 +269,8 @@ impl DropMasks {
     pub(crate) fn project_splash(&self, present: [f32; 2], elevation: f32) -> MaskLookup {
         let [begin, end] = present;
         let stage = (-begin / (end - begin).max(1.0e-9)).clamp(0.0, 1.0);
-        let rise = PROJECT_SPLASH_TOP * (stage / PROJECT_SPLASH_RISE).min(1.0);
-        let fall = (stage - PROJECT_SPLASH_RISE).max(0.0) / (1.0 - PROJECT_SPLASH_RISE);
+        let rise = PROJECT_SPLASH_TOP * (stage / SPLASH_RISE_SHARE).min(1.0);
+        let fall = (stage - SPLASH_RISE_SHARE).max(0.0) / (1.0 - SPLASH_RISE_SHARE);
         let last = (PROJECT_SPLASHES - 1) as f32;
         let row = rise + (last - PROJECT_SPLASH_TOP) * fall;
         let above = (DROPS_ELEVATIONS - 1) as f32;

@@ -3,9 +3,8 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use downpour_mask::{ClosedMesh, Mask, MaskError, View, trace_model_views};
-use downpour_shaders::render::rain::{
-    DROPS_ELEVATIONS, PROJECT_SPLASH_RISE, PROJECT_SPLASH_TOP, PROJECT_SPLASHES,
-};
+use downpour_shaders::render::rain::{DROPS_ELEVATIONS, PROJECT_SPLASH_TOP, PROJECT_SPLASHES};
+use downpour_shaders::sim::splash::SPLASH_RISE_SHARE;
 use rayon::prelude::*;
 
 use super::masks::options;
@@ -43,7 +42,7 @@ pub(super) fn masks(refractive_index: f64) -> Result<SplashMasks, MaskError> {
 
 /// Stage of a row of the masks of splashes.
 fn stage(row: f64) -> f64 {
-    let (top, rise) = (f64::from(PROJECT_SPLASH_TOP), f64::from(PROJECT_SPLASH_RISE));
+    let (top, rise) = (f64::from(PROJECT_SPLASH_TOP), f64::from(SPLASH_RISE_SHARE));
     if row <= top {
         return row / top * rise;
     }

@@ -2,11 +2,11 @@
 //! `shaders/wgsl/sim/shelter.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
-use downpour_shaders::sim::field::{FIELD_RADIUS, FIELD_SIDES, FIELD_THRESHOLDS};
+use downpour_shaders::sim::field::{FIELD_SIDES, FIELD_THRESHOLDS};
 use glam::{DVec3, Vec3};
 
 use super::thinning::Thinning;
-use super::{Class, RainField, check_time};
+use super::{Class, RainField, Reach, check_time};
 use crate::SimError;
 use crate::drift::Drift;
 use crate::field::chain::FieldTime;
@@ -57,8 +57,14 @@ pub struct FieldClass {
     pub least_units: u32,
     /// Intervals of these parts per unit of diameter, in units of 2^-32.
     pub kept_inverse: u32,
+    /// Largest distance of a drop of the class, m.
+    pub farthest: f32,
     /// 0.
-    pub unused: u32,
+    pub unused: [u32; 2],
+    /// Way from a drop to what is seen, m.
+    pub shift: Vec3,
+    /// Distance, m, by which what is seen is larger than so many diameters.
+    pub margin: f32,
 }
 
 /// Uniforms of the search for the drops of a picture.
@@ -77,10 +83,10 @@ pub struct FieldFrame {
     pub turning: Vec3,
     /// Least distance of a drop, m.
     pub nearest: f32,
-    /// Distance up to which a drop is resolved, by its diameter.
+    /// Distance up to which a drop is searched for, by its diameter.
     pub per_diameter: f32,
-    /// Largest distance of a drop, m.
-    pub farthest: f32,
+    /// Further distance, m.
+    pub beyond: f32,
     /// Time ([`FieldTime`]).
     pub seconds: u32,
     /// See `seconds`.
@@ -101,8 +107,8 @@ pub struct FieldFrame {
     pub begins: u32,
     /// The length of a row; 0: all drops fall.
     pub kept_row: u32,
-    /// 0.
-    pub unused: u32,
+    /// Radius of what is seen, in diameters.
+    pub radius: f32,
 }
 
 /// Uniforms of the search for what obstacles stop.
@@ -155,16 +161,31 @@ impl RainField {
         view.check()?;
         check_time(time_s)?;
         let drift = Drift::new(&self.wind, time_s);
-        let base = drift.middle();
         let [least_pixels, room] = self.roomy(view, &drift, max_room);
+        let reach = Reach::of_view(view, least_pixels);
+        let of_class = |class: &Class| (reach.range(class.largest) >= view.near).then_some(reach);
+        let room = (room as u32).min(max_room).max(1);
+        let resolved = Resolved::of(view, least_pixels);
+        Ok(self.query_of(view, (time_s, drift), of_class, room, resolved))
+    }
+
+    /// The question for drops of some classes at a time that the wind has moved so far. What all classes share is taken from the first.
+    pub(crate) fn query_of(
+        &self,
+        view: &View,
+        (time_s, drift): (f64, Drift),
+        of_class: impl Fn(&Class) -> Option<Reach>,
+        room: u32,
+        resolved: Resolved,
+    ) -> FieldQuery {
+        let base = drift.middle();
         let (mut classes, mut columns) = (Vec::new(), 0u32);
         let (mut slowest, mut deepest) = (f64::INFINITY, f64::INFINITY);
+        let mut shared: Option<Reach> = None;
         for (k, class) in (0u32..).zip(&self.classes) {
-            let range = view.range(class.largest, least_pixels);
-            if range < view.near {
-                continue;
-            }
-            let mut row = class.row(view, range, &drift, base);
+            let Some(reach) = of_class(class) else { continue };
+            shared.get_or_insert(reach);
+            let Some(mut row) = class.row(view, &reach, &drift, base) else { continue };
             row.first_node = k * self.nodes_of_class();
             row.first_threshold = k * 2 * FIELD_THRESHOLDS;
             row.first_column = columns;
@@ -178,33 +199,33 @@ impl RainField {
             deepest = deepest.min(view.eye.y + f64::from(row.heights[0]));
             classes.push(row);
         }
+        let shared = shared.unwrap_or_else(|| Reach::of_view(view, view.least_pixels));
         let time = FieldTime::new(time_s);
-        let normals = |sides: [DVec3; 5]| sides.map(|side| side.as_vec3().extend(0.0).to_array());
         let frame = FieldFrame {
-            sides: normals(view.sides()),
-            swept: normals(view.swept_sides()),
+            sides: field_normals(view.sides()),
+            swept: field_normals(view.swept_sides()),
             velocity: view.velocity.as_vec3(),
             half_shutter: (0.5 * view.shutter_s) as f32,
             turning: view.turning.as_vec3(),
             nearest: view.near as f32,
-            per_diameter: (1.0 / (view.pixel_angle * least_pixels).max(1.0e-12)) as f32,
-            farthest: view.far as f32,
+            per_diameter: (1.0 / shared.angle) as f32,
+            beyond: shared.beyond as f32,
             seconds: time.seconds,
             fraction: time.fraction,
             is_before: time.is_before,
             classes: classes.len() as u32,
             columns,
-            room: (room as u32).min(max_room).max(1),
+            room,
             begins: self.thinning.as_ref().map_or(0, |thinning| thinning.begins.len() as u32),
             kept_row: self.thinning.as_ref().map_or(0, |thinning| thinning.row_len() as u32),
+            radius: shared.radius as f32,
             ..FieldFrame::zeroed()
         };
         let now = drift;
         let table = now
             .entries()
             .flat_map(|[moved, wind]| [*moved - base, *wind].map(|v| v.as_vec3().extend(0.0).to_array()));
-        let (drift, resolved) = (table.collect(), Resolved::of(view, least_pixels));
-        Ok(FieldQuery { frame, classes, drift, now, resolved, slowest, deepest })
+        FieldQuery { frame, classes, drift: table.collect(), now, resolved, slowest, deepest }
     }
 
     /// Number of nodes of the sizes of each class.
@@ -213,20 +234,21 @@ impl RainField {
     }
 }
 
+/// Normals of the sides of a picture as rows.
+pub(crate) fn field_normals(sides: [DVec3; 5]) -> [[f32; 4]; FIELD_SIDES as usize] {
+    sides.map(|side| side.as_vec3().extend(0.0).to_array())
+}
+
 impl Class {
-    /// The columns of a class that a picture may show up to a distance; `base` is taken off the drift.
-    fn row(&self, view: &View, range: f64, drift: &Drift, base: DVec3) -> FieldClass {
-        let margin = self.half_way(view, drift) + f64::from(FIELD_RADIUS) * self.largest;
-        let bounds = view.bounds(range, margin);
-        let [xs, zs] = self.columns(&bounds, drift);
-        let [least, most] = drift.span(self.speeds[0], self.speeds[1]);
-        let (carried, spread) = (least.midpoint(most) - base, 0.5 * (most - least).length());
-        let half = (bounds.high.y - bounds.low.y) * 0.5;
-        let radius = (0.5 * self.edge * self.edge + half * half).sqrt() + spread;
+    /// The columns of a class in which a search may find drops; `base` is taken off the drift.
+    fn row(&self, view: &View, reach: &Reach, drift: &Drift, base: DVec3) -> Option<FieldClass> {
+        let seen = self.seen(view, reach, drift)?;
+        let [xs, zs] = self.columns(&seen.bounds, drift);
         let eye = view.eye - base;
         let at = [eye.x / self.edge, eye.z / self.edge];
         let periods = (eye.y / self.period * 4_294_967_296.0).round() as i64 as u64;
-        FieldClass {
+        let middle = seen.middle - base;
+        Some(FieldClass {
             seed: self.seed,
             edge: self.edge as f32,
             period: self.period as f32,
@@ -236,12 +258,15 @@ impl Class {
             eye_column: at.map(|at| at.floor() as i32),
             eye_in_column: at.map(|at| (at - at.floor()) as f32),
             eye_periods: [(periods >> 32) as u32, periods as u32],
-            heights: [bounds.low.y - view.eye.y, bounds.high.y - view.eye.y].map(|height| height as f32),
-            drift: [carried.x as f32, carried.z as f32],
-            reach: (radius + margin) as f32,
-            middle: ((bounds.low.y + bounds.high.y) * 0.5 - view.eye.y) as f32,
+            heights: [seen.bounds.low.y, seen.bounds.high.y].map(|height| (height - view.eye.y) as f32),
+            drift: [middle.x as f32, middle.z as f32],
+            reach: seen.radius as f32,
+            middle: (seen.middle.y - view.eye.y) as f32,
+            farthest: reach.farthest as f32,
+            shift: reach.shift.as_vec3(),
+            margin: reach.margin as f32,
             ..FieldClass::default()
-        }
+        })
     }
 }
 

@@ -7,14 +7,17 @@ use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu, w
 use downpour_shaders::sim::field::{
     FIELD_CLEAR_KERNEL, FIELD_FIND_KERNEL, SHELTER_AMONG_HOLES_KERNEL, SHELTER_KERNEL,
 };
+use downpour_shaders::sim::splash::SPLASH_KERNEL;
 use glam::{DVec3, Vec3};
 
 use super::GpuSimError;
 use crate::drift::Drift;
 use crate::field::frame::{FieldQuery, ShelterFrame};
-use crate::field::{EyeDrop, RainField};
+use crate::field::{EyeDrop, RainField, check_time};
+use crate::impacts::SplashOptions;
+use crate::impacts::splash_frame::SplashSearch;
 use crate::resolved::Resolved;
-use crate::shelter::{CUT_S, number_of_cuts};
+use crate::shelter::{CUT_S, MAX_BACK_S, number_of_cuts};
 use crate::view::View;
 
 /// Obstacles on the device: the nodes and triangles of a `downpour_bvh::Bvh`.
@@ -57,6 +60,8 @@ pub struct FieldSearch<'a> {
     pub pane: Option<[f32; 4]>,
     /// Drops that are known already, at the beginning of the list: droplets that rebound.
     pub known: &'a [EyeDrop],
+    /// Splashes that are searched for as well, where there are obstacles, whose triangles are numbered by their places in the list.
+    pub splashes: Option<&'a SplashOptions>,
 }
 
 /// Lists that differ by less than so many drops have buffers of one size.
@@ -71,6 +76,7 @@ pub struct FieldPipeline {
     shelter: ComputeKernel,
     /// Made for the first obstacles with holes.
     among_holes: OnceLock<ComputeKernel>,
+    splash: ComputeKernel,
 }
 
 /// A rain on the device.
@@ -85,13 +91,27 @@ pub struct FieldOnGpu {
     cuts: BTreeMap<i64, Drift>,
 }
 
+/// Where drops are listed, and counted.
+#[derive(Clone, Copy)]
+struct ListOnGpu<'a> {
+    drops: &'a wgpu::Buffer,
+    found: &'a wgpu::Buffer,
+}
+
+/// A search for drops, ready to be made.
+#[derive(Debug)]
+struct Search<'a> {
+    clear: (wgpu::BindGroup, [u32; 3]),
+    find: Option<(wgpu::BindGroup, [u32; 3])>,
+    shelter: Option<(&'a ComputeKernel, wgpu::BindGroup, [u32; 3])>,
+}
+
 /// The search for the drops of a picture, ready to be made.
 #[derive(Debug)]
 pub struct FieldPass<'a> {
     pipeline: &'a FieldPipeline,
-    clear: (wgpu::BindGroup, [u32; 3]),
-    find: Option<(wgpu::BindGroup, [u32; 3])>,
-    shelter: Option<(&'a ComputeKernel, wgpu::BindGroup, [u32; 3])>,
+    search: Search<'a>,
+    splashes: Vec<(Search<'a>, wgpu::BindGroup, [u32; 3])>,
     drops: wgpu::Buffer,
     found: wgpu::Buffer,
     known: u32,
@@ -113,6 +133,7 @@ impl FieldPipeline {
             find: kernel(&FIELD_FIND_KERNEL)?,
             shelter: kernel(&SHELTER_KERNEL)?,
             among_holes: OnceLock::new(),
+            splash: kernel(&SPLASH_KERNEL)?,
         })
     }
 
@@ -152,52 +173,99 @@ impl FieldPipeline {
         obstacles: &ObstaclesOnGpu<'_>,
         search: &FieldSearch<'_>,
     ) -> Result<FieldPass<'_>, GpuSimError> {
-        let mut query = field.query(search.view, search.time_s, search.max_room)?;
-        let gpu = &self.gpu;
+        let slices = match (search.splashes, obstacles.bounds) {
+            (Some(splashes), Some(bounds)) => {
+                search.view.check()?;
+                check_time(search.time_s)?;
+                splashes.searches(field, search.view, search.time_s, (bounds, obstacles.origin))
+            }
+            _ => Vec::new(),
+        };
+        let crowns = SplashOptions::room(&slices);
+        let mut query =
+            field.query(search.view, search.time_s, search.max_room.saturating_sub(crowns).max(1))?;
         let usage = wgpu::BufferUsages::STORAGE;
+        query.frame.room += crowns;
         let (known, room) = (search.known.len() as u32, query.frame.room);
         query.frame.first = known;
         query.frame.pane = search.pane.unwrap_or_default();
-        let places = u64::from((known + room).next_multiple_of(LIST_STEP));
-        let drops = buffers.buffer("falling drops", places * size_of::<EyeDrop>() as u64, usage)?;
+        let list = |label, places: u32| {
+            let places = u64::from(places.next_multiple_of(LIST_STEP));
+            buffers.buffer(label, places * size_of::<EyeDrop>() as u64, usage)
+        };
+        let drops = list("falling drops", known + room)?;
         buffers.write(&drops, bytemuck::cast_slice(search.known));
         let found = buffers.buffer("number of drops", 8, usage)?;
+        let to = ListOnGpu { drops: &drops, found: &found };
+        let (resolved, columns) = (query.resolved, query.frame.columns);
+        let of_picture =
+            self.search(buffers, (field, on), obstacles, (search.view, search.time_s), query, to)?;
+        let mut splashes = Vec::new();
+        for slice in slices {
+            let SplashSearch { slice, view, query, mut frame } = slice;
+            let of_slice = list("drops of a slice", query.frame.room)?;
+            let counts = buffers.buffer("number of drops of a slice", 8, usage)?;
+            let from = ListOnGpu { drops: &of_slice, found: &counts };
+            let time_s = slice.middle_s();
+            let searched = self.search(buffers, (field, on), obstacles, (&view, time_s), query, from)?;
+            (frame.first, frame.room) = (known, room);
+            frame.pane = search.pane.unwrap_or_default();
+            let uniform = buffers.uniform("splash frame", &frame)?;
+            let bound = [&uniform, obstacles.nodes, obstacles.triangles, &of_slice, &counts, &drops, &found];
+            let groups = workgroups_for(frame.drops);
+            splashes.push((searched, self.splash.bind(&self.gpu, &bound)?, groups));
+        }
+        on.forget_before((search.time_s / CUT_S) as i64);
+        Ok(FieldPass {
+            pipeline: self,
+            search: of_picture,
+            splashes,
+            drops,
+            found,
+            known,
+            room,
+            resolved,
+            columns,
+        })
+    }
+
+    /// Makes ready to find some drops.
+    fn search(
+        &self,
+        buffers: &impl BufferSource,
+        (field, on): (&RainField, &mut FieldOnGpu),
+        obstacles: &ObstaclesOnGpu<'_>,
+        (view, time_s): (&View, f64),
+        query: FieldQuery,
+        to: ListOnGpu<'_>,
+    ) -> Result<Search<'_>, GpuSimError> {
+        let ListOnGpu { drops, found } = to;
+        let gpu = &self.gpu;
+        let room = query.frame.room;
         let uniform = buffers.uniform("field frame", &query.frame)?;
-        let clear = self.clear.bind_at(gpu, [(0, &uniform), (5, &drops), (6, &found)])?;
+        let clear = self.clear.bind_at(gpu, [(0, &uniform), (5, drops), (6, found)])?;
         let mut find = None;
         if query.frame.columns > 0 {
             let classes = buffers.storage("classes of the field", &query.classes)?;
             let drift = buffers.storage("drift of drops", &query.drift)?;
             let (nodes, thresholds) = (&on.nodes, &on.thresholds);
-            let bound =
-                [&uniform, &classes, nodes, thresholds, &drift, &drops, &found, &on.begins, &on.parts];
+            let bound = [&uniform, &classes, nodes, thresholds, &drift, drops, found, &on.begins, &on.parts];
             find = Some((self.find.bind(gpu, &bound)?, workgroups_for(query.frame.columns)));
         }
         let mut shelter = None;
         if let Some(bounds) = obstacles.bounds {
-            let (frame, drift) = shelter_frame(field, on, &query, (obstacles, bounds), search);
+            let (frame, drift) = shelter_frame(field, on, &query, (obstacles, bounds), (view, time_s));
             let uniform = buffers.uniform("shelter frame", &frame)?;
             let drift = buffers.storage("drift of paths", &drift)?;
             let mut bound = vec![(1, obstacles.nodes), (2, obstacles.triangles)];
             if let Some(HolesOnGpu { corners, table, texels }) = obstacles.holes {
                 bound.extend([(3, corners), (4, table), (5, texels)]);
             }
-            bound.extend([(6, &uniform), (7, &drops), (8, &drift)]);
+            bound.extend([(6, &uniform), (7, drops), (8, &drift)]);
             let kernel = self.shelter(obstacles.holes.is_some())?;
             shelter = Some((kernel, kernel.bind_at(gpu, bound)?, workgroups_for(room)));
         }
-        Ok(FieldPass {
-            pipeline: self,
-            clear: (clear, workgroups_for(room)),
-            find,
-            shelter,
-            drops,
-            found,
-            known,
-            room,
-            resolved: query.resolved,
-            columns: query.frame.columns,
-        })
+        Ok(Search { clear: (clear, workgroups_for(room)), find, shelter })
     }
 
     /// The kernel that asks for obstacles, with holes or without.
@@ -219,16 +287,14 @@ fn shelter_frame(
     on: &mut FieldOnGpu,
     query: &FieldQuery,
     (obstacles, [low, high]): (&ObstaclesOnGpu<'_>, [Vec3; 2]),
-    search: &FieldSearch<'_>,
+    (view, time_s): (&View, f64),
 ) -> (ShelterFrame, Vec<[f32; 4]>) {
-    let view = search.view;
     let half = 0.5 * view.shutter_s;
-    let open_s = search.time_s - half;
+    let open_s = time_s - half;
     let last = (open_s / CUT_S).floor();
     let height = f64::from(high.y) + obstacles.origin.y - query.deepest;
     let cuts = number_of_cuts(&field.wind, height, query.slowest) as i64;
     let numbers = last as i64 - cuts + 1..=last as i64;
-    on.cuts.retain(|number, _| numbers.contains(number));
     for number in numbers.clone() {
         on.cuts.entry(number).or_insert_with(|| Drift::new(&field.wind, number as f64 * CUT_S));
     }
@@ -254,16 +320,35 @@ fn shelter_frame(
     (frame, drift)
 }
 
+impl FieldOnGpu {
+    /// Forgets the drift that no picture near a quarter of a second needs.
+    fn forget_before(&mut self, quarter: i64) {
+        let longest = (MAX_BACK_S / CUT_S) as i64 + 8;
+        self.cuts.retain(|number, _| (quarter - longest..quarter + 8).contains(number));
+    }
+}
+
+impl Search<'_> {
+    /// The dispatches, in this order.
+    fn dispatches<'a>(&'a self, pipeline: &'a FieldPipeline) -> Vec<Dispatch<'a>> {
+        let mut all = vec![pipeline.clear.dispatch(&self.clear.0, self.clear.1)];
+        all.extend(self.find.as_ref().map(|(bindings, groups)| pipeline.find.dispatch(bindings, *groups)));
+        all.extend(
+            self.shelter.as_ref().map(|(kernel, bindings, groups)| kernel.dispatch(bindings, *groups)),
+        );
+        all
+    }
+}
+
 impl FieldPass<'_> {
     /// The dispatches, in this order.
     #[must_use]
     pub fn dispatches(&self) -> Vec<Dispatch<'_>> {
-        let FieldPipeline { clear, find, .. } = self.pipeline;
-        let mut all = vec![clear.dispatch(&self.clear.0, self.clear.1)];
-        all.extend(self.find.as_ref().map(|(bindings, groups)| find.dispatch(bindings, *groups)));
-        all.extend(
-            self.shelter.as_ref().map(|(kernel, bindings, groups)| kernel.dispatch(bindings, *groups)),
-        );
+        let mut all = self.search.dispatches(self.pipeline);
+        for (search, bindings, groups) in &self.splashes {
+            all.extend(search.dispatches(self.pipeline));
+            all.push(self.pipeline.splash.dispatch(bindings, *groups));
+        }
         all
     }
 

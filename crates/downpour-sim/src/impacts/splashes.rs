@@ -3,6 +3,9 @@
 use downpour_drop::splash::{Splash, SplashLaw, crown};
 use downpour_math::in_range;
 use downpour_math::rng::{rng_draw, rng_unit};
+use downpour_shaders::sim::splash::{
+    SPLASH_HIGH, SPLASH_LARGEST, SPLASH_LEVEL, SPLASH_LONGEST, SPLASH_LOW, SPLASH_SIZE, SPLASH_SMALLEST,
+};
 
 use super::{Candidate, Impact, OfClass};
 use crate::SimError;
@@ -13,23 +16,20 @@ use crate::shelter::Obstacles;
 use crate::view::{Bounds, View, within};
 use glam::DVec3;
 
-/// Dimension of the random numbers of splashes.
-const SIZE: u32 = 8204;
-
 /// Difference between the id of a drop and that of its splash.
-const SPLASH: u64 = 0x6a09_e667_f3bc_c909;
+const SPLASH: u64 = (SPLASH_HIGH as u64) << 32 | SPLASH_LOW as u64;
 
 /// Range of the random size of a splash, relative to the law.
-const SIZES: [f64; 2] = [0.75, 1.25];
+const SIZES: [f64; 2] = [SPLASH_SMALLEST as f64, SPLASH_LARGEST as f64];
 
 /// Crowns are drawn from this width on the picture on, in pixels: below, they are no more than the texture of the ground.
-const LEAST_PIXELS: f64 = 3.0;
+pub(super) const LEAST_PIXELS: f64 = 3.0;
 
 /// Least vertical component of the normal of a surface on which crowns stand: on steeper ones a drop spreads downhill.
-const LEVEL: f32 = 0.8;
+const LEVEL: f32 = SPLASH_LEVEL;
 
 /// Longest duration of a crown, s: that of a drop of 5 mm at terminal speed.
-const LONGEST_S: f64 = 0.055;
+const LONGEST_S: f64 = SPLASH_LONGEST as f64;
 
 /// Largest number of crowns of a picture.
 const MOST: usize = 65_536;
@@ -102,7 +102,8 @@ impl SplashOptions {
         if impact.normal.y < LEVEL || !(0.0..duration_s).contains(&age_s) {
             return None;
         }
-        let [chance, ..] = rng_draw([impact.id as u32, (impact.id >> 32) as u32], 0, 0, SIZE).map(rng_unit);
+        let [chance, ..] =
+            rng_draw([impact.id as u32, (impact.id >> 32) as u32], 0, 0, SPLASH_SIZE).map(rng_unit);
         let random = SIZES[0] + (SIZES[1] - SIZES[0]) * f64::from(chance);
         let radius = radius_m * self.size * random;
         let position = impact.position + DVec3::Y * (radius * crown::middle(age_s / duration_s));

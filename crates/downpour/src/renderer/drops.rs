@@ -41,7 +41,8 @@ impl Drops {
         let Found { drops, simulated } = found.unwrap_or(Found { drops: Vec::new(), simulated: 0 });
         let in_world = |(drop, known): (EyeDrop, Option<u32>)| {
             let droplet = known.and_then(|known| shown.droplets.get(known as usize));
-            droplet.copied().unwrap_or_else(|| drop.to_falling(shown.view.eye, DropKind::Falling))
+            let kind = if drop.speed < 0.0 { DropKind::Splash } else { DropKind::Falling };
+            droplet.copied().unwrap_or_else(|| drop.to_falling(shown.view.eye, kind))
         };
         let drops = drops.into_iter().map(in_world).collect();
         VisibleDrops { drops, simulated, resolved: shown.resolved }

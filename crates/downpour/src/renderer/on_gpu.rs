@@ -126,6 +126,7 @@ impl OnGpu {
             max_room: self.renderer.max_drops(),
             pane: shown.pane.map(|pane| pane.outward.extend(pane.distance).to_array()),
             known: &known,
+            splashes: shown.splashes.as_ref(),
         };
         let drops = PictureDrops::Field(FieldDrops { field: rain, on_gpu, search, origin: stage.origin });
         Ok(self.renderer.draw_for(of, &stage.data, &stage.viewpoint, drops, masks, options)?)

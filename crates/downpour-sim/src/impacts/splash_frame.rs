@@ -1,0 +1,264 @@
+//! What a GPU needs to list the crowns of a slice of time; twin of `shaders/wgsl/sim/splash.wgsl`, whose struct has the layout of
+//! [`SplashFrame`].
+
+use bytemuck::{Pod, Zeroable};
+use downpour_bvh::BvhTriangle;
+use downpour_math::rng::{rng_draw, rng_unit};
+use downpour_shaders::sim::field::{FIELD_SIDES, FIELD_SPLASH};
+use downpour_shaders::sim::splash::{
+    SPLASH_FINGERS, SPLASH_HIGH, SPLASH_LARGEST, SPLASH_LEVEL, SPLASH_LONGEST, SPLASH_LOW, SPLASH_RISE_SHARE,
+    SPLASH_RISE_TIMES, SPLASH_SIZE, SPLASH_SMALLEST, SPLASH_THRESHOLD, SPLASH_WALL,
+};
+use glam::{DVec3, Vec3};
+
+use super::SplashOptions;
+use super::slices::Slice;
+use super::splashes::LEAST_PIXELS;
+use crate::falling::EyeDrop;
+use crate::field::frame::{FieldQuery, field_normals};
+use crate::field::{Class, RainField, Reach};
+use crate::resolved::Resolved;
+use crate::view::{Bounds, View};
+
+/// Length of the slices of time in which impacts are searched, s: longer than that of crowns.
+const SLICE_S: f64 = 1.0 / 16.0;
+
+/// Room for drops of a slice beyond what is expected, for chance and for classes of few drops.
+const ROOM: f64 = 1.25;
+const SPARE_ROOM: f64 = 4096.0;
+
+/// Uniforms of the crowns of a slice.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct SplashFrame {
+    /// Outward normals of the pyramid of the picture.
+    pub sides: [[f32; 4]; FIELD_SIDES as usize],
+    /// Pane before the eye: its unit normal, away from the eye, and its distance, m; 0 for none.
+    pub pane: [f32; 4],
+    /// Position of the eye relative to the obstacles, m.
+    pub eye: Vec3,
+    /// Half the length of the slice, s.
+    pub half_time: f32,
+    /// Time of the picture from the middle of the slice, s.
+    pub now: f32,
+    /// Splash parameter of a drop of 1 m at 1 m/s.
+    pub strength: f32,
+    /// Radius of the crown of a drop of 1 m, m.
+    pub radius: f32,
+    /// Distance up to which crowns are listed, by their radius.
+    pub per_radius: f32,
+    /// Largest distance of a crown, m.
+    pub farthest: f32,
+    /// Room for the drops of the slice.
+    pub drops: u32,
+    /// Places of the list before the first that is searched for.
+    pub first: u32,
+    /// Room after them.
+    pub room: u32,
+}
+
+/// The search for the crowns of a slice.
+#[derive(Debug)]
+pub(crate) struct SplashSearch {
+    pub(crate) slice: Slice,
+    /// The eye that stands still for as long.
+    pub(crate) view: View,
+    pub(crate) query: FieldQuery,
+    pub(crate) frame: SplashFrame,
+}
+
+/// Drops of all slices of a picture that a GPU is asked for, at most: beyond, a CPU looks where surfaces are.
+const MOST_DROPS: f64 = 1_048_576.0;
+
+/// Crowns of a picture for which there is room on a GPU.
+const MOST_CROWNS: u32 = 65_536;
+
+impl SplashOptions {
+    /// True if a GPU is to find the crowns of a picture at a time in s; `corners` are those of all obstacles, relative to `origin`.
+    #[must_use]
+    pub fn fits_device(
+        &self,
+        field: &RainField,
+        view: &View,
+        time_s: f64,
+        corners: [Vec3; 2],
+        origin: DVec3,
+    ) -> bool {
+        let searches = self.searches(field, view, time_s, (corners, origin));
+        searches.iter().map(|search| f64::from(search.frame.drops)).sum::<f64>() <= MOST_DROPS
+    }
+
+    /// Room for the crowns of some searches.
+    pub(crate) fn room(searches: &[SplashSearch]) -> u32 {
+        searches.iter().map(|search| search.frame.drops).fold(0, u32::saturating_add).min(MOST_CROWNS)
+    }
+
+    /// Searches for the crowns of a picture at a time in s, one for each slice of time; `corners` are those of all obstacles.
+    pub(crate) fn searches(
+        &self,
+        field: &RainField,
+        view: &View,
+        time_s: f64,
+        (corners, origin): ([Vec3; 2], DVec3),
+    ) -> Vec<SplashSearch> {
+        let of_slice = |slice: Slice| {
+            let around = slice.around(field, corners, origin);
+            let reach = self.reach(field, view, &slice, around);
+            let still = slice.view(view);
+            let expected = |class: &Class| {
+                let Some(reach) = reach(class) else { return 0.0 };
+                let margin = class.half_way(&still, &slice.drift) + reach.radius(class.largest);
+                class.density * still.swept_volume(reach.range(class.largest), margin)
+            };
+            let room = field.classes.iter().map(expected).sum::<f64>() * ROOM + SPARE_ROOM;
+            let middle_s = slice.middle_s();
+            let resolved = Resolved::of(view, LEAST_PIXELS);
+            let query =
+                field.query_of(&still, (middle_s, slice.drift.clone()), &reach, room as u32, resolved);
+            let frame = SplashFrame {
+                sides: field_normals(view.sides()),
+                eye: (view.eye - origin).as_vec3(),
+                half_time: slice.half_s() as f32,
+                now: (time_s - middle_s) as f32,
+                strength: self.law.strength() as f32,
+                radius: (self.law.unit_radius() * self.size) as f32,
+                per_radius: (2.0 / (view.pixel_angle * LEAST_PIXELS).max(1.0e-12)) as f32,
+                farthest: view.far as f32,
+                drops: query.frame.room,
+                ..SplashFrame::zeroed()
+            };
+            SplashSearch { slice, view: still, query, frame }
+        };
+        let span_s = [time_s - f64::from(SPLASH_LONGEST), time_s];
+        Slice::all(field, span_s, SLICE_S).into_iter().map(of_slice).collect()
+    }
+
+    /// Which drops of a class may have hit in a slice where a picture shows their crown.
+    fn reach(
+        &self,
+        field: &RainField,
+        view: &View,
+        slice: &Slice,
+        within: Bounds,
+    ) -> impl Fn(&Class) -> Option<Reach> + use<> {
+        let widest: Vec<Option<f64>> = field.classes.iter().map(|class| self.widest(class, slice)).collect();
+        // For the largest of its class; all of them are nearer than this.
+        let ratio = |(class, radius): (&Class, &Option<f64>)| radius.unwrap_or(0.0) / class.largest;
+        let ratio = field.classes.iter().zip(&widest).map(ratio).fold(0.0, f64::max);
+        let largest = widest.iter().flatten().copied().fold(0.0, f64::max);
+        let (view, beyond) = (*view, 0.5 * slice.longest_way(field) + largest);
+        move |class: &Class| {
+            let radius = widest.get(class.number).copied().flatten()?;
+            let range = view.range(2.0 * radius, LEAST_PIXELS);
+            (range >= view.near).then(|| Reach {
+                angle: (view.pixel_angle * LEAST_PIXELS).max(1.0e-12) / (2.0 * ratio),
+                beyond,
+                farthest: range + beyond,
+                radius: 0.0,
+                margin: 1.5 * radius,
+                shift: DVec3::ZERO,
+                within,
+            })
+        }
+    }
+
+    /// Radius, m, of the widest crown of a class; `None` if none of its drops splashes.
+    fn widest(&self, class: &Class, slice: &Slice) -> Option<f64> {
+        // The wind adds to the speed of a drop toward a slope.
+        let wind = slice.drift.of(class.speeds[1])[1].length();
+        let splash = self.law.splash(class.largest, class.speeds[1] + wind)?;
+        Some(splash.radius_m * self.size * f64::from(SPLASH_LARGEST))
+    }
+}
+
+/// Splash parameter of a drop that meets a surface with a speed toward it, in m and m/s.
+#[must_use]
+pub fn splash_parameter(strength: f32, diameter: f32, speed: f32) -> f32 {
+    strength * speed * speed.sqrt().sqrt() * (diameter * diameter.sqrt()).sqrt()
+}
+
+/// Half the height of a crown at a stage, in its radius.
+#[must_use]
+pub fn splash_middle(stage: f32) -> f32 {
+    let rise = (stage / SPLASH_RISE_SHARE).clamp(0.0, 1.0);
+    let fall = ((stage - SPLASH_RISE_SHARE) / (1.0 - SPLASH_RISE_SHARE)).clamp(0.0, 1.0);
+    let left = 1.0 - fall;
+    let up = rise * (2.0 - rise);
+    let height = 0.05 + (SPLASH_WALL - 0.05) * up * left * left.sqrt() - 0.045 * fall;
+    let fingers = 0.01 + (SPLASH_FINGERS - 0.01) * up * (1.0 - fall * fall) - 0.008 * fall;
+    0.5 * (height + fingers)
+}
+
+/// Unit normal of a triangle on the side that a drop of a velocity came from.
+#[must_use]
+pub fn splash_facing(triangle: &BvhTriangle, velocity: Vec3) -> Vec3 {
+    let facet = Vec3::from(triangle.edge_1).cross(triangle.edge_2.into());
+    let normal = facet.normalize_or(Vec3::Y);
+    if normal.dot(velocity) > 0.0 { -normal } else { normal }
+}
+
+impl SplashFrame {
+    /// Crown of a drop that has met a surface with a normal at the end of its presence, as the picture shows it, if there is one.
+    #[must_use]
+    pub fn splash_crown(&self, drop: &EyeDrop, normal: Vec3) -> Option<EyeDrop> {
+        let met = drop.present[1];
+        let velocity = Vec3::from(drop.velocity);
+        let (age, toward) = (self.now - met, -velocity.dot(normal));
+        let splashes =
+            toward > 0.0 && splash_parameter(self.strength, drop.diameter, toward) > SPLASH_THRESHOLD;
+        if normal.y < SPLASH_LEVEL || !splashes {
+            return None;
+        }
+        let duration = (SPLASH_RISE_TIMES * drop.diameter / toward / SPLASH_RISE_SHARE).min(SPLASH_LONGEST);
+        if !(0.0..duration).contains(&age) {
+            return None;
+        }
+        let [chance, ..] = rng_draw([drop.id_low, drop.id ^ drop.id_low], 0, 0, SPLASH_SIZE).map(rng_unit);
+        let random = SPLASH_SMALLEST + (SPLASH_LARGEST - SPLASH_SMALLEST) * chance;
+        let radius = self.radius * drop.diameter * drop.diameter.sqrt().sqrt() * random;
+        let offset =
+            Vec3::from(drop.offset) + velocity * met + Vec3::Y * (radius * splash_middle(age / duration));
+        let range = (radius * self.per_radius).min(self.farthest);
+        let [x, y, z, distance] = self.pane;
+        // The mask reaches beyond the largest radius, to the droplets of the rim.
+        let within = |side: &[f32; 4]| Vec3::from_slice(side).dot(offset) <= 1.5 * radius;
+        let is_seen = offset.length() < range
+            && Vec3::new(x, y, z).dot(offset) >= distance
+            && self.sides.iter().all(within);
+        is_seen.then(|| EyeDrop {
+            offset: offset.into(),
+            diameter: 2.0 * radius,
+            velocity: [0.0; 3],
+            id: drop.id ^ SPLASH_HIGH ^ SPLASH_LOW,
+            present: [-age, duration - age],
+            speed: FIELD_SPLASH,
+            id_low: drop.id_low ^ SPLASH_LOW,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use downpour_drop::splash::{FILM_M, SplashLaw, crown};
+
+    /// The forms of a GPU are the law and the shape of `downpour_drop`.
+    #[test]
+    fn crowns_are_those_of_the_law() {
+        let law = SplashLaw::new(FILM_M, 20.0).unwrap();
+        for (diameter, speed) in [(0.7e-3, 3.1), (1.3e-3, 5.0), (2.0e-3, 6.5), (5.0e-3, 9.1)] {
+            let found = splash_parameter(law.strength() as f32, diameter as f32, speed as f32);
+            assert!((f64::from(found) / law.parameter(diameter, speed) - 1.0).abs() < 1.0e-5, "{diameter}");
+            let expected = law.splash(diameter, speed).map(|splash| splash.radius_m);
+            let found = law.unit_radius() * diameter * diameter.sqrt().sqrt();
+            assert!(expected.is_none_or(|radius| (found / radius - 1.0).abs() < 1.0e-9), "{diameter}");
+        }
+        for k in 0..=100 {
+            let stage = f64::from(k) / 100.0;
+            assert!(
+                (f64::from(splash_middle(stage as f32)) - crown::middle(stage)).abs() < 1.0e-6,
+                "{stage}"
+            );
+        }
+    }
+}

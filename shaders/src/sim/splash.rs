@@ -1,0 +1,54 @@
+//! Crowns of splashes before a picture. Twin: `downpour_sim::impacts`.
+
+use super::field::{EYE_DROP, FIELD_CONSTANTS};
+use crate::bvh::BVH;
+use crate::common::{INVOCATION, RNG};
+use crate::{Kernel, Module};
+
+/// Every module of this file.
+pub const MODULES: &[&Module] = &[&SPLASH_CONSTANTS, &SPLASH];
+
+/// Every kernel of this file.
+pub const KERNELS: &[&Kernel] = &[&SPLASH_KERNEL];
+
+shared_constants! {
+    /// Laws of splashes (`downpour_drop::splash`), and what of them is drawn at random.
+    SPLASH_CONSTANTS at "sim/splash_constants" {
+        /// Least splash parameter of a drop that splashes.
+        SPLASH_THRESHOLD: f32 = 57.7;
+        /// Time at which a crown is highest, in drop diameters over the drop's speed.
+        SPLASH_RISE_TIMES: f32 = 12.0;
+        /// Fraction of its duration in which a crown rises.
+        SPLASH_RISE_SHARE: f32 = 0.125;
+        /// Largest height of the wall of a crown, in its radius.
+        SPLASH_WALL: f32 = 0.42;
+        /// Largest height of the fingers above it.
+        SPLASH_FINGERS: f32 = 0.34;
+        /// Dimension of the random number of a crown's size.
+        SPLASH_SIZE: u32 = 8204;
+        /// Smallest size of a crown, relative to the law.
+        SPLASH_SMALLEST: f32 = 0.75;
+        /// Largest size of a crown, relative to the law.
+        SPLASH_LARGEST: f32 = 1.25;
+        /// Difference between the id of a drop and that of its splash: the lower half.
+        SPLASH_LOW: u32 = 4089235721;
+        /// The upper half.
+        SPLASH_HIGH: u32 = 1779033703;
+        /// Least vertical component of the normal of a surface on which crowns stand.
+        SPLASH_LEVEL: f32 = 0.8;
+        /// Longest duration of a crown, s.
+        SPLASH_LONGEST: f32 = 0.055;
+        /// Time around a hit in which the same hit is found again, s.
+        SPLASH_AGAIN: f32 = 2.0e-5;
+    }
+}
+
+/// Crowns of splashes. Twin: `downpour_sim::impacts::splash_frame`.
+pub static SPLASH: Module = Module {
+    path: "sim/splash.wgsl",
+    wgsl: include_str!("../../wgsl/sim/splash.wgsl"),
+    uses: &[&FIELD_CONSTANTS, &SPLASH_CONSTANTS, &EYE_DROP, &INVOCATION, &RNG, &BVH],
+};
+
+/// One invocation per drop of a slice of time.
+pub static SPLASH_KERNEL: Kernel = Kernel { entry: "main_splash", module: &SPLASH, workgroup: [64, 1, 1] };
