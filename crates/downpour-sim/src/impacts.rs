@@ -117,15 +117,16 @@ impl RainField {
             let wanted = |drop: &Candidate| f64::from(drop.diameter) >= min_diameter;
             (class.largest >= min_diameter).then_some(OfClass { bounds, in_part: |_: &Bounds| true, wanted })
         };
-        self.impacts_of(&Facets::new(obstacles), 0.0, span_s, all, |impact| Some(*impact))
+        let facets = Facets::new(obstacles);
+        self.impacts_of(&facets, &mut Places::new(obstacles, 0.0), span_s, all, |impact| Some(*impact))
     }
 
     /// What `make` makes of the impacts of a span of time: of each class those that `of_class` says. `make` is asked before it is known
-    /// whether the drop comes from the sky. Impacts on surfaces whose normal has a vertical component below `least_level` may be left out.
+    /// whether the drop comes from the sky. Impacts on surfaces that are not in the places may be left out.
     fn impacts_of<P: Fn(&Bounds) -> bool, W: Fn(&Candidate) -> bool + Sync, T: Send>(
         &self,
         facets: &Facets<'_>,
-        least_level: f32,
+        places: &mut Places<'_>,
         span_s: [f64; 2],
         of_class: impl Fn(&Class) -> Option<OfClass<P, W>>,
         make: impl Fn(&Impact) -> Option<T> + Sync,
@@ -148,7 +149,7 @@ impl RainField {
         let of_classes: Vec<(&Class, Bounds, P, W)> = self.classes.iter().filter_map(within).collect();
         let all = of_classes.iter().map(|(_, bounds, ..)| *bounds).reduce(|a, b| a.union(&b));
         let Some(all) = all else { return Ok(Vec::new()) };
-        let mut places = Places::new(obstacles, &all, least_level);
+        let cells = Places::cells(&all);
         let mut boxes: Vec<(&Class, &W, Bounds, Bounds)> = Vec::new();
         for (class, bounds, in_part, wanted) in &of_classes {
             let way = ways.bounds(class.speeds);
@@ -156,7 +157,7 @@ impl RainField {
             let swept = |place: Bounds| Bounds { low: place.low + way.low, high: place.high + way.high };
             // Whole columns are looked at, and of each chain in them whether it has drops in the box.
             let around = way.high - way.low + DVec3::new(class.edge, class.period, class.edge);
-            let parts = places.within(bounds, around, in_part);
+            let parts = places.within(cells, bounds, around, in_part);
             boxes.extend(parts.into_iter().map(|place| (*class, wanted, place, swept(place))));
         }
         let slowest = boxes.iter().map(|(class, ..)| class.speeds[0]).fold(f64::INFINITY, f64::min);

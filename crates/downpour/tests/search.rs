@@ -70,8 +70,12 @@ fn a_device_finds_the_drops_of_the_cpu() -> Result<(), Box<dyn Error>> {
         for (id, drop) in &cpu {
             let Some(other) = device.get(id) else { continue };
             let apart = (drop.position - other.position).length();
-            assert!(apart < 2.0e-4, "{file}: drop {id} is {apart} m off");
-            assert_eq!((drop.kind, drop.diameter.to_bits()), (other.kind, other.diameter.to_bits()));
+            // Sizes of drops are decided in integers, those of crowns computed; in gusts their drops hit along other chords.
+            let is_crown = drop.kind == DropKind::Splash;
+            let (most, ulps) = if is_crown { (2.0e-3, 4) } else { (2.0e-4, 0) };
+            assert!(apart < most, "{file}: drop {id} is {apart} m off");
+            let differ = drop.diameter.to_bits().abs_diff(other.diameter.to_bits());
+            assert!(drop.kind == other.kind && differ <= ulps, "{file}: {drop:?} {other:?}");
             let part = |drop: &FallingDrop| drop.present_s.map(f32::is_finite);
             assert_eq!(part(drop), part(other), "{file}: drop {id}");
         }

@@ -6,6 +6,7 @@ use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_shaders::sim::step::{STEP_CLEAR, VOLUME_RADIUS};
 use glam::DVec3;
 
+use super::places::Places;
 use super::{CURVED_M, Candidate, Impact, MAX_SPAN_S, OfClass};
 use crate::SimError;
 use crate::drift::Drift;
@@ -63,6 +64,7 @@ impl RainField {
         let span = longest + view.shutter_s;
         let slices = (span / SLICE_S).ceil().max(1.0);
         let facets = Facets::new(obstacles);
+        let mut places = Places::new(obstacles, 0.0);
         let mut droplets = Vec::new();
         for slice in 0..slices as u32 {
             let ages = [slice, slice + 1].map(|k| f64::from(k) * span / slices - half);
@@ -95,7 +97,7 @@ impl RainField {
                     part[1] >= -half && view.shows(&sides, position, velocity, radius, range, part);
                 is_shown.then_some((impact.id, age, droplet, position, velocity))
             };
-            droplets.extend(self.impacts_of(&facets, 0.0, span, of_class, shown)?);
+            droplets.extend(self.impacts_of(&facets, &mut places, span, of_class, shown)?);
         }
         let listed = droplets.into_iter().filter_map(|(id, age, droplet, position, velocity)| {
             let stopped = droplet.stopped(obstacles, (age + half).min(longest)).map(|after| after - age);

@@ -8,22 +8,27 @@ use glam::{DVec3, Vec3};
 use crate::shelter::Obstacles;
 use crate::view::Bounds;
 
-/// Edge of a cell, m.
+/// Least edge of a cell, m.
 const CELL_M: f64 = 2.0;
 
-/// Maximum number of cells along an axis of a box: larger boxes have larger cells.
+/// Maximum number of cells along an axis of a box: larger boxes have cells of twice the edge, or of four times.
 const MAX_CELLS: f64 = 32.0;
 
 /// What rounding may put aside a surface, m.
 const SLACK_M: f64 = 0.01;
 
-/// Bounds of the obstacles in each cell of a lattice, found when they are asked for.
+/// Bounds of the obstacles in each cell of lattices, found when they are asked for.
 pub(super) struct Places<'a> {
     obstacles: &'a Obstacles<'a>,
     /// Least vertical component of the normals of the surfaces that are asked for, on either side.
     least_level: f32,
-    edge: f64,
-    found: HashMap<[i64; 3], Option<Bounds>>,
+    /// By the doublings of the least edge, and the cell.
+    found: HashMap<(i32, [i64; 3]), Option<Bounds>>,
+}
+
+/// Edge of a cell after some doublings, m.
+fn edge(cells: i32) -> f64 {
+    CELL_M * f64::from(1 << cells)
 }
 
 /// True if the normal of a triangle has a vertical component of `least` or more, on either side.
@@ -34,21 +39,29 @@ fn is_level(triangle: &BvhTriangle, least: f32) -> bool {
 }
 
 impl<'a> Places<'a> {
-    /// Places in boxes that are within `all`, of surfaces whose normal has a vertical component of `least_level` or more, on either side.
-    pub(super) fn new(obstacles: &'a Obstacles<'a>, all: &Bounds, least_level: f32) -> Self {
-        let edge = ((all.high - all.low).max_element() / MAX_CELLS).max(CELL_M);
-        Self { obstacles, least_level, edge, found: HashMap::new() }
+    /// Places of surfaces whose normal has a vertical component of `least_level` or more, on either side.
+    pub(super) fn new(obstacles: &'a Obstacles<'a>, least_level: f32) -> Self {
+        Self { obstacles, least_level, found: HashMap::new() }
     }
 
-    /// Boxes in `bounds`, apart from each other, that hold all obstacles in it, of those cells that are asked for. Neighbors
+    /// Cells for boxes that are within `all`, as doublings of the least edge.
+    pub(super) fn cells(all: &Bounds) -> i32 {
+        let extent = (all.high - all.low).max_element();
+        // Boxes are 2e7 m at most.
+        (0..20).find(|&cells| edge(cells) * MAX_CELLS >= extent).unwrap_or(20)
+    }
+
+    /// Boxes in `bounds`, apart from each other, that hold all obstacles in it, of those cells of a size that are asked for. Neighbors
     /// along y or x are one box where that has less volume when each box is larger by `around`, m.
     pub(super) fn within(
         &mut self,
+        cells: i32,
         bounds: &Bounds,
         around: DVec3,
         wanted: impl Fn(&Bounds) -> bool,
     ) -> Vec<Bounds> {
-        let cell = |at: DVec3| (at / self.edge).floor().to_array().map(|x| x as i64);
+        let edge = edge(cells);
+        let cell = |at: DVec3| (at / edge).floor().to_array().map(|x| x as i64);
         let (first, last) = (cell(bounds.low), cell(bounds.high));
         let volume = |b: &Bounds| (b.high - b.low + around).element_product();
         let joined = |a: &Bounds, b: &Bounds| {
@@ -62,7 +75,7 @@ impl<'a> Places<'a> {
             for x in first[0]..=last[0] {
                 let mut column: Vec<Bounds> = Vec::new();
                 for y in first[1]..=last[1] {
-                    let place = self.of_cell([x, y, z]).and_then(|place| place.common(bounds));
+                    let place = self.of_cell(cells, [x, y, z]).and_then(|place| place.common(bounds));
                     let Some(place) = place.filter(&wanted) else { continue };
                     match column.last_mut().and_then(|last| Some((joined(last, &place)?, last))) {
                         Some((both, last)) => *last = both,
@@ -84,9 +97,10 @@ impl<'a> Places<'a> {
     }
 
     /// Bounds of the obstacles in a cell.
-    fn of_cell(&mut self, cell: [i64; 3]) -> Option<Bounds> {
-        let (edge, obstacles, least) = (self.edge, self.obstacles, self.least_level);
-        *self.found.entry(cell).or_insert_with(|| {
+    fn of_cell(&mut self, cells: i32, cell: [i64; 3]) -> Option<Bounds> {
+        let (obstacles, least) = (self.obstacles, self.least_level);
+        let edge = edge(cells);
+        *self.found.entry((cells, cell)).or_insert_with(|| {
             let low = DVec3::from_array(cell.map(|k| k as f64)) * edge;
             let whole = Bounds { low, high: low + edge };
             let [low, high] = [low - SLACK_M, low + edge + SLACK_M]

@@ -68,7 +68,7 @@ pub(crate) struct SplashSearch {
 }
 
 /// Drops of all slices of a picture that a GPU is asked for, at most: beyond, a CPU looks where surfaces are.
-const MOST_DROPS: f64 = 1_048_576.0;
+const MOST_DROPS: f64 = 4_194_304.0;
 
 /// Crowns of a picture for which there is room on a GPU.
 const MOST_CROWNS: u32 = 65_536;
@@ -107,8 +107,11 @@ impl SplashOptions {
             let still = slice.view(view);
             let expected = |class: &Class| {
                 let Some(reach) = reach(class) else { return 0.0 };
+                let Some(seen) = class.seen(&still, &reach, &slice.drift) else { return 0.0 };
                 let margin = class.half_way(&still, &slice.drift) + reach.radius(class.largest);
-                class.density * still.swept_volume(reach.range(class.largest), margin)
+                let volume = still.swept_volume(reach.range(class.largest), margin);
+                let whole = (seen.bounds.high - seen.bounds.low).element_product();
+                class.density * volume.min(whole)
             };
             let room = field.classes.iter().map(expected).sum::<f64>() * ROOM + SPARE_ROOM;
             let middle_s = slice.middle_s();

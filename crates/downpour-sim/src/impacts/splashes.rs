@@ -7,6 +7,7 @@ use downpour_shaders::sim::splash::{
     SPLASH_HIGH, SPLASH_LARGEST, SPLASH_LEVEL, SPLASH_LONGEST, SPLASH_LOW, SPLASH_SIZE, SPLASH_SMALLEST,
 };
 
+use super::places::Places;
 use super::{Candidate, Impact, OfClass};
 use crate::SimError;
 use crate::facets::Facets;
@@ -83,7 +84,8 @@ impl RainField {
         };
         let span_s = [time_s - LONGEST_S, time_s];
         let crown = |impact: &Impact| options.crown(impact, view, time_s);
-        let mut crowns = self.impacts_of(&Facets::new(obstacles), LEVEL, span_s, of_class, crown)?;
+        let mut places = Places::new(obstacles, LEVEL);
+        let mut crowns = self.impacts_of(&Facets::new(obstacles), &mut places, span_s, of_class, crown)?;
         if crowns.len() > MOST {
             crowns.sort_by(|a, b| b.diameter.total_cmp(&a.diameter).then(a.id.cmp(&b.id)));
             crowns.truncate(MOST);
