@@ -36,21 +36,20 @@ fn encoded(image: &Image, exposure: f64) -> Vec<u8> {
 
 /// Mean FLIP within the streak, at 67 pixels for a degree, with the exposure that puts the logarithmic mean of the exact streak at 0.18.
 fn mean_flip(exact: &Image, found: &Image, within: &[bool]) -> f64 {
-    let light = |pixel: &[f32; 3]| {
-        f64::from(0.2126 * pixel[0] + 0.7152 * pixel[1] + 0.0722 * pixel[2]).max(1.0e-6)
-    };
+    let light =
+        |pixel: &[f32; 3]| f64::from(0.2126 * pixel[0] + 0.7152 * pixel[1] + 0.0722 * pixel[2]).max(1.0e-6);
     let count = within.iter().filter(|&&inside| inside).count() as f64;
-    let logs = exact.pixels.iter().zip(within).filter(|(_, inside)| **inside).map(|(p, _)| ops::log2(light(p)));
+    let logs =
+        exact.pixels.iter().zip(within).filter(|(_, inside)| **inside).map(|(p, _)| ops::log2(light(p)));
     let exposure = 0.18 / ops::pow(2.0, logs.sum::<f64>() / count);
-    let [exact, found] = [exact, found].map(|image| {
-        nv_flip::FlipImageRgb8::with_data(image.width, image.height, &encoded(image, exposure))
-    });
+    let [exact, found] = [exact, found]
+        .map(|image| nv_flip::FlipImageRgb8::with_data(image.width, image.height, &encoded(image, exposure)));
     let errors = nv_flip::flip(exact, found, nv_flip::DEFAULT_PIXELS_PER_DEGREE).to_vec();
     errors.iter().zip(within).filter(|(_, inside)| **inside).map(|(&e, _)| f64::from(e)).sum::<f64>() / count
 }
 
-/// Before the maps of streets by night and by day, in 1/500 s and less, from below and from above. The control is the table's streak
-/// upside down.
+/// Before the maps of streets by night and by day, level and from above. The exact streak has 2304 rays a pixel: before lamps by night 192
+/// have a noise of 0.03 of their own. The control is the table's streak upside down.
 #[test]
 fn a_table_streak_looks_like_the_exact_one() {
     let maps = ["street_night.hdr", "street_day.hdr"].map(street);
@@ -58,17 +57,15 @@ fn a_table_streak_looks_like_the_exact_one() {
     for (diameter_mm, map, pitch, exposure_s, oscillation) in [
         (4.0, night, 0.0, 2.0e-3, Amplitudes::NONE),
         (4.0, night, 0.0, 2.0e-3, Amplitudes::GARG_NAYAR_OBLATE),
-        (4.0, night, 0.6, 1.0e-3, Amplitudes::NONE),
-        (2.0, night, -0.3, 1.0e-3, Amplitudes::NONE),
         (4.0, day, 0.0, 2.0e-3, Amplitudes::NONE),
         (2.0, day, 0.8, 1.0e-3, Amplitudes::NONE),
     ] {
         let sky = Sky::new(maps[map].width, maps[map].height, &maps[map].radiance).expect("a sky");
         let shape = DropShape::new(diameter_mm * 1.0e-3).expect("a diameter");
         let options = SpecimenOptions {
-            size: [60, 180],
-            samples: 4,
-            instants: 12,
+            size: [40, 120],
+            samples: 6,
+            instants: 64,
             pitch,
             yaw: 0.9,
             exposure_s,

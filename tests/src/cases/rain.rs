@@ -4,6 +4,7 @@ use downpour_atlas::StreakPick;
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_drop::oscillation::Amplitudes;
 use downpour_gpu::{ComputeKernel, Gpu, GpuError};
+use downpour_math::ops;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_render::camera::Viewpoint;
 use downpour_render::gpu::RainPipeline;
@@ -408,7 +409,7 @@ fn moving(random: [u32; 4]) -> Vec<u32> {
     let drop = DropsDrop {
         slope,
         half_extent: 1.0 + 0.3 * unit(random[2] ^ random[0]),
-        along: [moves * turn.cos(), moves * turn.sin()],
+        along: [moves * ops::cos(turn), moves * ops::sin(turn)],
         depth_ratio: 0.5 + 1.5 * unit(random[3]),
         ..DropsDrop::default()
     };
