@@ -124,6 +124,7 @@ pub const BROKEN: &[Broken] = &[
         right: "(v * 3 + along) / 4",
         wrong: "(v * 3 + along) >> vec2u(2u)",
     },
+    Broken { function: "streak_span", right: "* (1.0 - ratio) / ratio", wrong: "* (ratio - 1.0) / ratio" },
     Broken { function: "streak_cell_weight", right: "5.0 / 12.0", wrong: "4.0 / 12.0" },
     Broken { function: "drop_glint_pixel", right: "(1.0 - offset.x)", wrong: "(0.9 - offset.x)" },
     Broken { function: "drop_glint_angle", right: "0.25 - octant", wrong: "0.25 + octant" },

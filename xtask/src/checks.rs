@@ -32,7 +32,7 @@ pub(crate) fn test(all: bool) -> Result<(), String> {
     if all { sweep() } else { Ok(()) }
 }
 
-/// Spoiled files by the hundred thousand, and lattices over a million steps.
+/// Spoiled files by the hundred thousand, lattices over a million steps, water by height on many panes, and lamps all around a streak.
 fn sweep() -> Result<(), String> {
     let mutations = ["test", "--locked", "-p", "downpour-scene", "--all-features", "--test", "mutations"];
     run::cargo(&mutations, &[("DOWNPOUR_MUTATIONS", "300000")])?;
@@ -46,8 +46,12 @@ fn sweep() -> Result<(), String> {
         "puddle",
         "--test",
         "glass_water",
+        "--test",
+        "glass_flow",
     ];
-    run::cargo(&[&lattice[..], &["--", "--ignored"]].concat(), &[])
+    run::cargo(&[&lattice[..], &["--", "--ignored"]].concat(), &[])?;
+    let lamps = ["test", "--release", "--locked", "-p", "downpour-specimen", "--test", "table"];
+    run::cargo(&[&lamps[..], &["--", "--ignored"]].concat(), &[])
 }
 
 /// Formatting, lints, each crate separately, documentation.

@@ -36,9 +36,19 @@ fn bands(columns: u32, panes: u64, times: u32) -> [f64; 8] {
 
 #[test]
 fn the_first_centimeters_of_a_picture_are_as_wet_as_the_rest() {
-    // The noise of so few drops is a tenth; without the inflow the first band has twice the mean.
+    // Few drops hold most of the water: bands of one pane scatter by 0.15 to 0.24, means of two by 0.1 to 0.17. Without the inflow the
+    // first band has twice the mean.
     let bands = bands(60, 2, 8);
     assert!(bands.iter().all(|band| (0.7..1.3).contains(band)), "{bands:?}");
+}
+
+/// The mean of 24 panes scatters by 0.03 to 0.05. Water runs the faster the farther it has come, so that the first band keeps a fifth
+/// more than the mean and the last a tenth less.
+#[test]
+#[ignore = "24 panes: run with --release"]
+fn bands_of_many_panes_hold_about_the_same_water() {
+    let bands = bands(60, 24, 8);
+    assert!(bands.iter().all(|band| (0.85..1.2).contains(band)), "{bands:?}");
 }
 
 /// Fraction of the moving water that is on glass which was wet before, and fraction of the glass that was.

@@ -67,6 +67,11 @@ mod streak_light;
 mod streak_lookup;
 mod streak_path;
 mod streak_rays;
+#[cfg(not(feature = "parity"))]
+pub(crate) mod streak_span;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
+pub mod streak_span;
 mod streak_table;
 #[cfg(not(feature = "parity"))]
 pub(crate) mod tiles;

@@ -173,6 +173,9 @@ fn a_streak_before_dark_ground_has_the_light_of_the_exact_one() {
         (2.0, 0.6, Amplitudes::GARG_NAYAR_OBLATE, 0.0),
         (3.0, 0.8, Amplitudes::NONE, 0.02),
         (5.0, 0.8, Amplitudes::NONE, 0.0),
+        (5.0, 1.1, Amplitudes::NONE, 0.0),
+        (5.0, 1.25, Amplitudes::NONE, 0.0),
+        (5.0, 1.4, Amplitudes::NONE, 0.0),
     ] {
         let radiance = sky_above(dark);
         let sky = Sky::new(96, 48, &radiance).unwrap();
@@ -202,7 +205,7 @@ fn lamp_ratio(diameter: f64, [yaw, height, radius]: [f64; 3], instants: u32) -> 
     let second = sum(&render_specimen(&shape, &others, lit).expect("a picture"));
     let exact = 0.5 * (first + second);
     let table = sum(&render_specimen_table(&shape, &options, lit).expect("a picture"));
-    assert!(exact > 1.0, "{diameter} mm, yaw {yaw}: {exact}");
+    assert!(exact > 0.1, "{diameter} mm, yaw {yaw}: {exact}");
     [table / exact - 1.0, (first - second).abs() / exact]
 }
 
@@ -221,6 +224,7 @@ fn a_lamp_lights_the_streak() {
         (1.0, 60.0, 0.0, 5.0, 24),
         (2.0, 60.0, 0.0, 5.0, 24),
         (0.5, 40.0, 0.0, 3.0, 20),
+        (2.0, 20.0, -30.0, 5.0, 25),
     ] {
         let [apart, noise] = lamp_ratio(diameter, [yaw, height, radius], instants);
         println!("{diameter} mm, yaw {yaw}, radius {radius}: {apart:+.4}, exact within {noise:.4}");
@@ -228,26 +232,29 @@ fn a_lamp_lights_the_streak() {
     }
 }
 
-/// Lamps all around, every 10 degrees, from below to above: within 6 % and the noise of the exact streak.
+/// Lamps all around, every 30 degrees, from below to above. Where a drop shows little of a lamp, the light that leaves it after the
+/// third exit counts, which the table gives to all directions alike: of such lamps a few are beyond 6 % and the noise of the exact
+/// streak, none is beyond 15 %.
 #[test]
-#[ignore = "a sweep of 380 lamps: run with --release"]
+#[ignore = "a sweep of 84 lamps: run with --release"]
 fn lamps_all_around_light_the_streak() {
-    let mut over = Vec::new();
+    let (mut over, mut sum, mut worst) = (0, 0.0, 0.0f64);
     for diameter in [1.0, 2.0, 3.0, 5.0] {
-        for height in [-60.0, -30.0, 0.0, 30.0, 60.0] {
+        for height in [-30.0, 0.0, 30.0] {
             let mut line = String::new();
-            for yaw in (0..=18).map(|k| f64::from(k) * 10.0) {
+            for yaw in (0..=6).map(|k| f64::from(k) * 30.0) {
                 let [apart, noise] = lamp_ratio(diameter, [yaw, height, 5.0], 25);
                 line += &format!(" {:+.1} ({:.1})", apart * 100.0, noise * 100.0);
-                if apart.abs() > 0.06 + noise {
-                    over.push((diameter, height, yaw, apart, noise));
-                }
+                over += u32::from(apart.abs() > 0.06 + noise);
+                worst = worst.max(apart.abs() - noise);
+                sum += apart;
             }
             println!("{diameter} mm, pitch {height}, by yaw in percent (noise):{line}");
         }
     }
-    println!("{} of 380 beyond 6 % and the noise: {over:.3?}", over.len());
-    assert!(over.len() < 38, "{over:?}");
+    let mean = sum / 84.0;
+    println!("{over} of 84 beyond 6 % and the noise, the worst by {worst:.3}; the mean {mean:+.4}");
+    assert!(over <= 8 && worst < 0.15 && mean.abs() < 0.02, "{over}, {worst}, {mean}");
 }
 
 /// Three indices give three colors, each that of its index.

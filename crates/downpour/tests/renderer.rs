@@ -111,6 +111,28 @@ fn frames_do_not_depend_on_those_before() {
     }
 }
 
+/// Rain that goes step by step shows at a time the same drops whatever the frame rate, the frames before it, and the first frame: its
+/// steps count from time 0, and what it holds is asked of the camera at time 0.
+#[test]
+fn stepped_rain_is_that_of_the_time_at_any_frame_rate() {
+    let text = OPEN.replace("[rain]", "[rain]\nvolume = \"view\"");
+    let drops = |times: &[f64]| {
+        let mut renderer = opened(&text);
+        let last = times.iter().map(|&time| renderer.frame(time).unwrap().drops).last().unwrap();
+        let mut drops = last.drops;
+        drops.sort_by_key(|drop| drop.id);
+        (last.resolved, drops)
+    };
+    let alone = drops(&[0.5]);
+    assert!(alone.1.len() > 10, "{} drops", alone.1.len());
+    for rate in [8.0, 24.0, 50.0] {
+        let clip: Vec<f64> = (0..=(0.5 * rate) as u32).map(|frame| f64::from(frame) / rate).collect();
+        assert!(drops(&clip) == alone, "{rate} frames a second");
+    }
+    assert!(drops(&[0.9, 0.5]) == alone, "back");
+    assert!(drops(&[0.48]) != alone, "control");
+}
+
 /// All frames have the exposure of the first, unless it is set.
 #[test]
 fn one_exposure_for_all_frames() {

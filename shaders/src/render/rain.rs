@@ -22,6 +22,7 @@ pub const MODULES: &[&Module] = &[
     &DROPS_SHADE,
     &STREAK,
     &STREAK_CELL,
+    &STREAK_SPAN,
     &STREAK_PATH,
     &STREAK_RAY,
     &STREAK_RAYS_MODULE,
@@ -131,7 +132,7 @@ shared_constants! {
         /// Number of these words.
         PROFILES_STATE: u32 = 34;
         /// Radians of the picture that a row of rays stands for: the directions in which a drop is seen differ by that.
-        PROFILES_TURNED: f32 = 0.1;
+        PROFILES_TURNED: f32 = 0.025;
         /// Profiles have half as many rows again as rays have.
         PROFILES_ROWS_FOR_TWO: u32 = 3;
         /// Shapes for the rays of streaks.
@@ -232,6 +233,10 @@ shared_constants! {
         STREAK_QUARTER: f32 = 1.5707964;
         /// 2 pi.
         STREAK_TURN: f32 = 6.2831855;
+        /// Fraction by which the depth of a drop changes at most, beyond the ends of its exposure, on the path of its profile.
+        STREAK_SPAN_ROOM: f32 = 0.5;
+        /// Exposures by which that path is longer at most, at either end.
+        STREAK_SPAN_MAX: f32 = 32.0;
         /// Step of the lattice of a pixel's samples.
         STREAK_LATTICE: u32 = 3;
         /// Shift of these samples from line to line: the golden ratio's part of 2^16.
@@ -263,7 +268,7 @@ shared_tables! {
         /// Widths, pixels, up to which a streak is of a kind; the last has no limit.
         PROFILES_WIDTHS: [f32; 4] = [3.0, 6.0, 14.0, 3.0e38];
         /// Columns across the motion.
-        PROFILES_COLUMNS: [f32; 4] = [12.0, 16.0, 24.0, 24.0];
+        PROFILES_COLUMNS: [f32; 4] = [12.0, 16.0, 24.0, 36.0];
         /// Rows for each turn of the mode (3,1).
         PROFILES_PER_TURN: [f32; 4] = [8.0, 12.0, 20.0, 24.0];
         /// The least of them, besides the first row.
@@ -322,6 +327,13 @@ pub static STREAK_CELL: Module = Module {
     uses: &[&RAIN_CONSTANTS],
 };
 
+/// Paths of the profiles of streaks. Twin: `downpour_render::rain::streak_span`.
+pub static STREAK_SPAN: Module = Module {
+    path: "render/streak_span.wgsl",
+    wgsl: include_str!("../../wgsl/render/streak_span.wgsl"),
+    uses: &[&RAIN_CONSTANTS, &STREAK],
+};
+
 /// A ray of a profile. Host type: `downpour_render::rain::StreakRay`.
 pub static STREAK_RAY: Module = Module {
     path: "render/streak_ray.wgsl",
@@ -333,7 +345,7 @@ pub static STREAK_RAY: Module = Module {
 pub static STREAK_PATH: Module = Module {
     path: "render/streak_path.wgsl",
     wgsl: include_str!("../../wgsl/render/streak_path.wgsl"),
-    uses: &[&RAIN_CONSTANTS, &OSCILLATION, &SHAPE, &WOBBLE, &STREAK, &DROP_GLINT],
+    uses: &[&RAIN_CONSTANTS, &OSCILLATION, &SHAPE, &WOBBLE, &STREAK, &STREAK_SPAN, &DROP_GLINT],
 };
 
 /// The rays of the profiles of streaks. Twin: `downpour_render::rain::streak_rays`.
@@ -373,7 +385,7 @@ pub static STREAK_LIGHT: Module = Module {
 pub static STREAK_LOOKUP: Module = Module {
     path: "render/streak_lookup.wgsl",
     wgsl: include_str!("../../wgsl/render/streak_lookup.wgsl"),
-    uses: &[&RAIN_CONSTANTS, &STREAK, &STREAK_CELL],
+    uses: &[&RAIN_CONSTANTS, &STREAK, &STREAK_SPAN, &STREAK_CELL],
 };
 
 /// Computation of the means of the streak radiance table. Twin: `downpour_render::rain::streak_table`.
@@ -440,7 +452,16 @@ pub static PROJECT: Module = Module {
 pub static PROFILES: Module = Module {
     path: "render/profiles.wgsl",
     wgsl: include_str!("../../wgsl/render/profiles.wgsl"),
-    uses: &[&INVOCATION, &RAIN_CONSTANTS, &PROFILES_TABLES, &OSCILLATION, &SHAPE, &STREAK, &STREAK_PATH],
+    uses: &[
+        &INVOCATION,
+        &RAIN_CONSTANTS,
+        &PROFILES_TABLES,
+        &OSCILLATION,
+        &SHAPE,
+        &STREAK,
+        &STREAK_SPAN,
+        &STREAK_PATH,
+    ],
 };
 
 /// Lists of drops for the tiles of a picture. Twin: `downpour_render::rain::tiles`.

@@ -74,10 +74,11 @@ fn profiles_sized(drop: DropsDrop) -> vec4u {
     while kind + 1u < PROFILES_KINDS && width > PROFILES_WIDTHS[kind] {
         kind += 1u;
     }
-    let along = sqrt(dot(drop.along, drop.along));
+    let span = streak_span(drop);
+    let along = sqrt(dot(drop.along, drop.along)) * (1.0 + span.before + span.after);
     let turned = atan2(along, 1.0) / PROFILES_TURNED;
     let oscillates = profiles_oscillates(drop);
-    let turns = select(0.0, drop.cycles.y, oscillates);
+    let turns = select(0.0, drop.cycles.y * (span.last - span.first), oscillates);
     let least = select(1.0, PROFILES_LEAST[kind], oscillates);
     let wanted = ceil(max(turns * PROFILES_PER_TURN[kind], turned));
     let rows = 1u + u32(clamp(wanted, least, PROFILES_MOST[kind]));

@@ -242,10 +242,10 @@ fn streak_light_spot(
 }
 
 // From the eye to a drop's middle at a time, of length 1.
-fn streak_light_view(drop: DropsDrop, time: f32) -> vec3f {
+fn streak_light_view(drop: DropsDrop, row: f32) -> vec3f {
     let right = drop_glint_right(drop.towards);
     let up = cross(right, drop.towards);
-    let middle = streak_path_instant(drop, time).middle;
+    let middle = streak_path_instant(drop, row).middle;
     return normalize(drop.towards + right * middle.x + up * middle.y);
 }
 

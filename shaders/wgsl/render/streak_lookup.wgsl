@@ -16,8 +16,8 @@ struct StreakPassage {
     columns: u32,
     profile_rows: u32,
     fine: u32,
-    // Time at which the drop is nearest, 0 to 1.
-    time: f32,
+    // Fraction of the rows before the time at which the drop is nearest.
+    row: f32,
     // Position across the outline in fractions of its columns, 0 to 1.
     across: f32,
     // The part of the chord that passes during the exposure, -1 to 1; none if `high` is not above `low`.
@@ -39,15 +39,18 @@ fn streak_lookup_chord(first: u32, columns: u32, row: u32, at: f32) -> vec4f {
 fn streak_lookup_passage(drop: DropsDrop, at: vec2f) -> StreakPassage {
     let first = drop.profile;
     let sizes = vec4u(streak_table[first]);
-    let way = streak_nearest(drop, at);
+    let span = streak_span(drop);
+    let moves = max(sqrt(dot(drop.along, drop.along)), 1.0e-20);
+    let nearest = dot(at - drop.start, drop.along) / (moves * moves);
+    let way = clamp(nearest, -span.before, 1.0 + span.after);
     let time = streak_time(drop.depth_ratio, way);
     let scale = drop.slope / streak_depth(drop.depth_ratio, time);
-    let moves = max(sqrt(dot(drop.along, drop.along)), 1.0e-20);
     let path = drop.along / moves;
     let offset = (at - drop.start - drop.along * way) / scale;
     let aside = offset.x * path.y - offset.y * path.x;
     let ahead = dot(offset, path);
-    let row_at = time * f32(sizes.x - 1u);
+    let fraction = clamp((time - span.first) / (span.last - span.first), 0.0, 1.0);
+    let row_at = fraction * f32(sizes.x - 1u);
     let row = min(u32(row_at), sizes.x - 2u);
     let row_part = row_at - f32(row);
     let width = streak_table[first + 1u + row * sizes.y].xy * (1.0 - row_part)
@@ -59,24 +62,24 @@ fn streak_lookup_passage(drop: DropsDrop, at: vec2f) -> StreakPassage {
         + streak_lookup_chord(first, sizes.y, row + 1u, column_at) * row_part;
     let half = chord.w * sqrt(max(1.0 - position * position, 0.0));
     let per_half = 1.0 / max(half, 1.0e-6);
-    let length = moves / scale;
     let faster = way + (1.0 - way) * drop.depth_ratio;
-    let rate = drop.fraction * drop.depth_ratio / max(faster * faster, 1.0e-12);
-    let low = max(((ahead - chord.z) - length * (1.0 - way)) * per_half, -1.0);
-    let high = select(min(((ahead - chord.z) + length * way) * per_half, 1.0), -2.0, half <= 1.0e-6);
-    let middle = clamp(way + ((ahead - chord.z) - 0.5 * half * (low + high)) / length, 0.0, 1.0);
-    let weight = streak_weight(drop.weights, streak_time(drop.depth_ratio, middle));
+    // Time in which it moves by an equivalent radius.
+    let pace = drop.depth_ratio / max(faster * faster, 1.0e-12) * scale / moves;
+    let low = max(((ahead - chord.z) - (1.0 - time) / pace) * per_half, -1.0);
+    let high = select(min(((ahead - chord.z) + time / pace) * per_half, 1.0), -2.0, half <= 1.0e-6);
+    let middle = time + ((ahead - chord.z) - 0.5 * half * (low + high)) * pace;
+    let weight = streak_weight(drop.weights, middle);
     return StreakPassage(
         first,
         sizes.x,
         sizes.y,
         sizes.z,
         sizes.w,
-        time,
+        fraction,
         across,
         low,
         high,
-        2.0 * half / length * rate * weight,
+        2.0 * half * pace * drop.fraction * weight,
     );
 }
 
@@ -96,7 +99,7 @@ fn streak_lookup_column(passage: StreakPassage, row: u32, sums: u32) -> vec3f {
 
 // The same between rows.
 fn streak_lookup_sum(passage: StreakPassage, sums: u32) -> vec3f {
-    let at = passage.time * f32(passage.profile_rows - 1u);
+    let at = passage.row * f32(passage.profile_rows - 1u);
     let low = min(u32(at), passage.profile_rows - 2u);
     let part = at - f32(low);
     return streak_lookup_column(passage, low, sums) * (1.0 - part)

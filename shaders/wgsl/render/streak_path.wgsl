@@ -1,6 +1,6 @@
 // A streak in time: where its drop is at an instant of the exposure, what shape it has then, and the rays that pass it.
 // Geometry: offsets are on the plane of streak.wgsl, in equivalent radii from the drop's middle, along the right and up of its
-// view. A ray of the eye through an offset is followed as it is, not as a parallel one.
+// view. Rays have the directions in which the eye's go, by streak_span.wgsl.
 // Time: what a pixel sees of a drop that moves along v is not the drop of one instant: a point that is v radii ahead of the
 // middle was passed earlier. Shapes are those of the time at which the point is passed.
 // Twin: downpour_render::rain::streak_path.
@@ -34,17 +34,19 @@ struct StreakPath {
     unused: u32,
 }
 
-// A drop at a time of its part of the exposure, 0 to 1.
+// A drop at the time of a row of its profile.
 struct StreakInstant {
     // Middle of the drop on the plane.
     middle: vec2f,
     // Equivalent radius on the plane.
     scale: f32,
     time: f32,
-    // Fraction of the way on the picture.
-    way: f32,
     // Time in which it moves by an equivalent radius.
     pace: f32,
+    // Fraction of the way along a chord by which its rays go through other points of the plane.
+    follow: f32,
+    // See StreakSpan.
+    funnel: f32,
 }
 
 // A ray in the frame of the drop, whose lobe is toward +X: the point on the plane, and the direction.
@@ -53,14 +55,18 @@ struct StreakLine {
     direction: vec3f,
 }
 
-// A drop at a time.
-fn streak_path_instant(drop: DropsDrop, time: f32) -> StreakInstant {
+// A drop at the time of a row of its profile, by the fraction of the rows before it.
+fn streak_path_instant(drop: DropsDrop, row: f32) -> StreakInstant {
+    let span = streak_span(drop);
+    let time = streak_span_time(span, row);
     let way = time * drop.depth_ratio / max(1.0 - time + time * drop.depth_ratio, 1.0e-20);
     let scale = drop.slope / streak_depth(drop.depth_ratio, time);
     let faster = way + (1.0 - way) * drop.depth_ratio;
     let rate = drop.depth_ratio / max(faster * faster, 1.0e-12);
     let moves = max(sqrt(dot(drop.along, drop.along)), 1.0e-20);
-    return StreakInstant(drop.start + drop.along * way, scale, time, way, rate * scale / moves);
+    let pace = rate * scale / moves;
+    let middle = drop.start + drop.along * way;
+    return StreakInstant(middle, scale, time, pace, 1.0 - span.parallel, span.funnel);
 }
 
 // The unit vector along the motion on the plane, and the one across it.
@@ -105,11 +111,14 @@ fn streak_path_back(path: StreakPath, v: vec3f) -> vec3f {
     return vec3f(v.x * path.lobe.x - v.z * path.lobe.y, v.y, v.z * path.lobe.x + v.x * path.lobe.y);
 }
 
-// The ray through an offset.
-fn streak_path_line(path: StreakPath, drop: DropsDrop, instant: StreakInstant, offset: vec2f) -> StreakLine {
+// A ray of the pixel whose ray is point.x beside the path, when it is point.y ahead of the drop's middle.
+fn streak_path_line(path: StreakPath, drop: DropsDrop, instant: StreakInstant, point: vec2f) -> StreakLine {
+    let axes = streak_path_axes(drop);
+    let offset = axes.zw * (point.x * (1.0 + instant.funnel * point.y)) + axes.xy * point.y;
+    let through = axes.zw * point.x + axes.xy * (instant.follow * point.y);
     let right = drop_glint_right(drop.towards);
     let up = cross(right, drop.towards);
-    let position = instant.middle + offset * instant.scale;
+    let position = instant.middle + through * instant.scale;
     let direction = normalize(drop.towards + right * position.x + up * position.y);
     let origin = right * offset.x + up * offset.y;
     return StreakLine(streak_path_turned(path, origin), streak_path_turned(path, direction));

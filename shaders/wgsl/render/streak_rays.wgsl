@@ -14,7 +14,12 @@
 
 var<workgroup> streak_rays_points: array<vec2f, STREAK_OUTLINE>;
 
-// A point of the outline, across and along the motion, at an angle from the motion.
+// Of the pixel that sees a point at a radius and an angle from the motion: the distance from the path, and how far ahead it is.
+fn streak_rays_beside(instant: StreakInstant, radius: f32, c: f32, s: f32) -> vec2f {
+    return vec2f(radius * s / (1.0 + instant.funnel * radius * c), radius * c);
+}
+
+// A point of the outline at an angle from the motion.
 fn streak_rays_outline(path: StreakPath, drop: DropsDrop, instant: StreakInstant, angle: f32) -> vec2f {
     let axes = streak_path_axes(drop);
     let c = cos(angle);
@@ -28,7 +33,7 @@ fn streak_rays_outline(path: StreakPath, drop: DropsDrop, instant: StreakInstant
     for (var step = 0u; step < STREAK_OUTLINE_STEPS; step += 1u) {
         let time = instant.time - radius * c * instant.pace;
         let body = streak_path_body(path, streak_path_displacement(path, drop, time));
-        let line = streak_path_line(path, drop, instant, way * radius);
+        let line = streak_path_line(path, drop, instant, streak_rays_beside(instant, radius, c, s));
         along = mask_wobble_nearest(body, line.origin, line.direction, along);
         let surface = mask_wobble_surface(body.shape, body.state, line.origin + line.direction * along);
         let gauge = sqrt(max(surface.excess + 1.0, 0.0));
@@ -36,7 +41,7 @@ fn streak_rays_outline(path: StreakPath, drop: DropsDrop, instant: StreakInstant
         let next = radius - surface.excess / (gauge + 1.0) * gauge / slope;
         radius = clamp(next, STREAK_OUTLINE_MIN, STREAK_OUTLINE_MAX);
     }
-    return vec2f(radius * s, radius * c);
+    return streak_rays_beside(instant, radius, c, s);
 }
 
 // Middle and half of the outline's width.
@@ -68,8 +73,7 @@ fn streak_rays_chord(across: f32) -> vec2f {
 
 // The ray through a point across and along the motion.
 fn streak_rays_ray(path: StreakPath, drop: DropsDrop, instant: StreakInstant, point: vec2f) -> StreakRay {
-    let axes = streak_path_axes(drop);
-    let line = streak_path_line(path, drop, instant, axes.xy * point.y + axes.zw * point.x);
+    let line = streak_path_line(path, drop, instant, point);
     let time = instant.time - point.y * instant.pace;
     let body = streak_path_body(path, streak_path_displacement(path, drop, time));
     let light = mask_wobble_light(body, line.origin, line.direction);

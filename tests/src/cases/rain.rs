@@ -4,6 +4,7 @@ use downpour_atlas::StreakPick;
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_drop::oscillation::Amplitudes;
 use downpour_gpu::{ComputeKernel, Gpu, GpuError};
+use downpour_math::ops;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_render::camera::Viewpoint;
 use downpour_render::gpu::RainPipeline;
@@ -15,16 +16,17 @@ use downpour_render::rain::streak::streak_weight;
 use downpour_render::rain::streak_cell::{
     streak_cell_index, streak_cell_position, streak_cell_slope, streak_cell_weight,
 };
+use downpour_render::rain::streak_span::{StreakSpan, streak_span, streak_span_time};
 use downpour_render::rain::{
-    DropMasks, EnvironmentMap, Exposure, EyeMotion, MediumOptions, PanePlane, Rain, RainMedium, RainOptions,
-    RefractionForm, StreakColor, StreakProfiles, StreakSamples, TemporalResponse,
+    DropMasks, DropsDrop, EnvironmentMap, Exposure, EyeMotion, MediumOptions, PanePlane, Rain, RainMedium,
+    RainOptions, RefractionForm, StreakColor, StreakProfiles, StreakSamples, TemporalResponse,
 };
 use downpour_shaders::render::medium::{
     MEDIUM, MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL,
 };
 use downpour_shaders::render::rain::{
     COMPOSE, COMPOSE_KERNEL, DROPS_KERNEL, DROPS_MASK, STREAK, STREAK_CELL, STREAK_LIGHT_KERNEL, STREAK_RAYS,
-    STREAK_RAYS_KERNEL, STREAK_TABLE_KERNEL,
+    STREAK_RAYS_KERNEL, STREAK_SPAN, STREAK_TABLE_KERNEL,
 };
 use downpour_shaders::render::scene::TRACE_KERNEL;
 use downpour_sim::field::{DropKind, FallingDrop};
@@ -395,6 +397,30 @@ fn weights(random: [u32; 4]) -> Vec<u32> {
     random[..2].iter().map(|&word| (2.0 * rng_unit(word)).to_bits()).collect()
 }
 
+/// Words of a drop.
+const DROP: usize = size_of::<DropsDrop>() / 4;
+
+/// A drop that moves by some of its radii, nearer, away or neither.
+fn moving(random: [u32; 4]) -> Vec<u32> {
+    let unit = |word: u32| rng_unit(word.wrapping_mul(0x9e37_79b9));
+    let slope = 0.03 * unit(random[0]) + 1.0e-4;
+    let moves = slope * (0.1 + 20.0 * unit(random[1]) * unit(random[1]));
+    let turn = 6.0 * unit(random[2]);
+    let drop = DropsDrop {
+        slope,
+        half_extent: 1.0 + 0.3 * unit(random[2] ^ random[0]),
+        along: [moves * ops::cos(turn), moves * ops::sin(turn)],
+        depth_ratio: 0.5 + 1.5 * unit(random[3]),
+        ..DropsDrop::default()
+    };
+    bytemuck::cast_slice(bytemuck::bytes_of(&drop)).to_vec()
+}
+
+fn span_words(span: &StreakSpan) -> Vec<u32> {
+    let StreakSpan { before, after, first, last, parallel, funnel } = *span;
+    [before, after, first, last, parallel, funnel].words()
+}
+
 /// The cases.
 pub(super) fn functions() -> Vec<FunctionCase> {
     vec![
@@ -425,6 +451,29 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &[Made(weights), Uniform(-0.5, 1.5)],
             Tol::absolute(1.0e-6, "a sum of products of numbers up to 2"),
             |a| streak_weight(a.f32s(), a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "streak_span",
+            &STREAK_SPAN,
+            &[Made(moving)],
+            Tol::relative(
+                1.0e-5,
+                1.0e-6,
+                "quotients and products of a few numbers, and a difference from 1 of at least 3e-7 of it",
+            )
+            .with_outliers(1.0e-2),
+            |a| span_words(&streak_span(&bytemuck::cast(a.u32s::<DROP>()))),
+        ),
+        FunctionCase::new(
+            "streak_span_time",
+            &STREAK_SPAN,
+            &[Uniform(0.0, 1.0); 7],
+            Tol::absolute(5.0e-7, "a sum of products of numbers up to 1"),
+            |a| {
+                let [before, after, first, last, parallel, funnel] = a.f32s();
+                let span = StreakSpan { before, after, first, last, parallel, funnel };
+                streak_span_time(&span, a.f32()).words()
+            },
         ),
         FunctionCase::new(
             "drops_mask_right",

@@ -16,6 +16,7 @@ use super::streak::DropsDrop;
 use super::streak_light::UNITS;
 use super::streak_lookup::STREAK_MEAN_ENTRIES;
 use super::streak_path::StreakPath;
+use super::streak_span::streak_span;
 use super::{DropMasks, StreakRay};
 
 /// Most rays, and most entries of the table: 128 MiB each, what every device binds.
@@ -140,10 +141,12 @@ pub fn profiles_sized(drop: &DropsDrop) -> Sizes {
     while kind + 1 < PROFILES_KINDS as usize && width > PROFILES_WIDTHS[kind] {
         kind += 1;
     }
+    let span = streak_span(drop);
     let [x, y] = drop.along;
-    let turned = ops::atan2((x * x + y * y).sqrt(), 1.0) / PROFILES_TURNED;
-    let (turns, least) =
-        if profiles_oscillates(drop) { (drop.cycles[1], PROFILES_LEAST[kind]) } else { (0.0, 1.0) };
+    let along = (x * x + y * y).sqrt() * (1.0 + span.before + span.after);
+    let turned = ops::atan2(along, 1.0) / PROFILES_TURNED;
+    let turns = drop.cycles[1] * (span.last - span.first);
+    let (turns, least) = if profiles_oscillates(drop) { (turns, PROFILES_LEAST[kind]) } else { (0.0, 1.0) };
     let wanted = (turns * PROFILES_PER_TURN[kind]).max(turned).ceil();
     let rows = 1 + wanted.clamp(least, PROFILES_MOST[kind]) as u32;
     [rows, PROFILES_COLUMNS[kind] as u32, profiles_rows_of(rows), PROFILES_FINE[kind] as u32]

@@ -198,12 +198,12 @@ fn streak_light_spot(
     spots
 }
 
-/// From the eye to a drop's middle at a time, of length 1.
-fn streak_light_view(drop: &DropsDrop, time: f32) -> Vec3 {
+/// From the eye to a drop's middle in a row of the profile, by the fraction of the rows before it, of length 1.
+fn streak_light_view(drop: &DropsDrop, row: f32) -> Vec3 {
     let towards = Vec3::from(drop.towards);
     let right = drop_glint_right(towards);
     let up = right.cross(towards);
-    let middle = streak_path_instant(drop, time).middle;
+    let middle = streak_path_instant(drop, row).middle;
     drops_mask_unit(towards + right * middle.x + up * middle.y)
 }
 

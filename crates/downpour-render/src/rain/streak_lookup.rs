@@ -3,8 +3,9 @@
 use downpour_shaders::render::rain::{STREAK_RAYS, STREAK_SUMS};
 use glam::{Vec2, Vec3, Vec4};
 
-use super::streak::{DropsDrop, streak_depth, streak_nearest, streak_time, streak_weight};
+use super::streak::{DropsDrop, streak_depth, streak_time, streak_weight};
 use super::streak_cell::{streak_cell_index, streak_cell_position};
+use super::streak_span::streak_span;
 
 /// Entries of the mean of a class of drops.
 pub(super) const STREAK_MEAN_ENTRIES: u32 = STREAK_RAYS * STREAK_RAYS;
@@ -27,8 +28,8 @@ struct StreakPassage {
     /// Rows of the profile, and fine columns of each column.
     profile_rows: u32,
     fine: u32,
-    /// Time at which the drop is nearest, 0 to 1.
-    time: f32,
+    /// Fraction of the rows before the time at which the drop is nearest.
+    row: f32,
     /// Position across the outline in fractions of its columns, 0 to 1.
     across: f32,
     /// The part of the chord that passes during the exposure, -1 to 1; none if `high` is not above `low`.
@@ -55,16 +56,19 @@ impl StreakTable {
     fn streak_lookup_passage(&self, drop: &DropsDrop, at: Vec2) -> StreakPassage {
         let first = drop.profile;
         let [rows, columns, profile_rows, fine] = self.entry(first).to_array().map(|n| n as u32);
-        let way = streak_nearest(drop, at);
-        let time = streak_time(drop.depth_ratio, way);
-        let scale = drop.slope / streak_depth(drop.depth_ratio, time);
+        let span = streak_span(drop);
         let along = Vec2::from(drop.along);
         let moves = along.dot(along).sqrt().max(1.0e-20);
+        let nearest = (at - Vec2::from(drop.start)).dot(along) / (moves * moves);
+        let way = nearest.clamp(-span.before, 1.0 + span.after);
+        let time = streak_time(drop.depth_ratio, way);
+        let scale = drop.slope / streak_depth(drop.depth_ratio, time);
         let path = along / moves;
         let offset = (at - Vec2::from(drop.start) - along * way) / scale;
         let aside = offset.x * path.y - offset.y * path.x;
         let ahead = offset.dot(path);
-        let row_at = time * (rows - 1) as f32;
+        let fraction = ((time - span.first) / (span.last - span.first)).clamp(0.0, 1.0);
+        let row_at = fraction * (rows - 1) as f32;
         let row = (row_at as u32).min(rows - 2);
         let row_part = row_at - row as f32;
         let width_of = |row: u32| self.entry(first + 1 + row * columns);
@@ -76,25 +80,25 @@ impl StreakTable {
             + self.streak_lookup_chord(first, columns, row + 1, column_at) * row_part;
         let half = chord.w * (1.0 - position * position).max(0.0).sqrt();
         let per_half = 1.0 / half.max(1.0e-6);
-        let length = moves / scale;
         let faster = way + (1.0 - way) * drop.depth_ratio;
-        let rate = drop.fraction * drop.depth_ratio / (faster * faster).max(1.0e-12);
-        let low = (((ahead - chord.z) - length * (1.0 - way)) * per_half).max(-1.0);
+        // Time in which it moves by an equivalent radius.
+        let pace = drop.depth_ratio / (faster * faster).max(1.0e-12) * scale / moves;
+        let low = (((ahead - chord.z) - (1.0 - time) / pace) * per_half).max(-1.0);
         let high =
-            if half <= 1.0e-6 { -2.0 } else { (((ahead - chord.z) + length * way) * per_half).min(1.0) };
-        let middle = (way + ((ahead - chord.z) - 0.5 * half * (low + high)) / length).clamp(0.0, 1.0);
-        let weight = streak_weight(drop.weights, streak_time(drop.depth_ratio, middle));
+            if half <= 1.0e-6 { -2.0 } else { (((ahead - chord.z) + time / pace) * per_half).min(1.0) };
+        let middle = time + ((ahead - chord.z) - 0.5 * half * (low + high)) * pace;
+        let weight = streak_weight(drop.weights, middle);
         StreakPassage {
             first,
             rows,
             columns,
             profile_rows,
             fine,
-            time,
+            row: fraction,
             across,
             low,
             high,
-            fraction: 2.0 * half / length * rate * weight,
+            fraction: 2.0 * half * pace * drop.fraction * weight,
         }
     }
 
@@ -114,7 +118,7 @@ impl StreakTable {
 
     /// The same between rows.
     fn streak_lookup_sum(&self, passage: &StreakPassage, sums: u32) -> Vec3 {
-        let at = passage.time * (passage.profile_rows - 1) as f32;
+        let at = passage.row * (passage.profile_rows - 1) as f32;
         let low = (at as u32).min(passage.profile_rows - 2);
         let part = at - low as f32;
         self.streak_lookup_column(passage, low, sums) * (1.0 - part)

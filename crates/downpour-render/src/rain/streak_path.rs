@@ -8,6 +8,7 @@ use glam::{Vec2, Vec3};
 
 use super::glint::drop_glint_right;
 use super::streak::{DropsDrop, streak_depth};
+use super::streak_span::{streak_span, streak_span_time};
 
 /// A streak that has a profile, or a class of drops that has a mean. The same layout as `StreakPath` in WGSL.
 #[repr(C)]
@@ -47,7 +48,7 @@ pub struct StreakPath {
     pub unused: u32,
 }
 
-/// A drop at a time of its part of the exposure, 0 to 1.
+/// A drop at the time of a row of its profile.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StreakInstant {
     /// Middle of the drop on the plane.
@@ -57,17 +58,30 @@ pub(super) struct StreakInstant {
     pub(super) time: f32,
     /// Time in which it moves by an equivalent radius.
     pub(super) pace: f32,
+    /// Fraction of the way along a chord by which its rays go through other points of the plane.
+    pub(super) follow: f32,
+    /// See [`StreakSpan`](super::streak_span::StreakSpan).
+    pub(super) funnel: f32,
 }
 
-/// A drop at a time.
-pub(super) fn streak_path_instant(drop: &DropsDrop, time: f32) -> StreakInstant {
+/// A drop at the time of a row of its profile, by the fraction of the rows before it.
+pub(super) fn streak_path_instant(drop: &DropsDrop, row: f32) -> StreakInstant {
+    let span = streak_span(drop);
+    let time = streak_span_time(&span, row);
     let way = time * drop.depth_ratio / (1.0 - time + time * drop.depth_ratio).max(1.0e-20);
     let scale = drop.slope / streak_depth(drop.depth_ratio, time);
     let faster = way + (1.0 - way) * drop.depth_ratio;
     let rate = drop.depth_ratio / (faster * faster).max(1.0e-12);
     let along = Vec2::from(drop.along);
     let moves = along.dot(along).sqrt().max(1.0e-20);
-    StreakInstant { middle: Vec2::from(drop.start) + along * way, scale, time, pace: rate * scale / moves }
+    StreakInstant {
+        middle: Vec2::from(drop.start) + along * way,
+        scale,
+        time,
+        pace: rate * scale / moves,
+        follow: 1.0 - span.parallel,
+        funnel: span.funnel,
+    }
 }
 
 /// The unit vector along the motion on the plane, and the one across it.
@@ -126,17 +140,21 @@ impl StreakPath {
         Vec3::new(v.x * cosine - v.z * sine, v.y, v.z * cosine + v.x * sine)
     }
 
-    /// The ray through an offset, in the frame of the drop: the point on the plane, and the direction.
+    /// A ray of the pixel whose ray is `point.x` beside the path, when it is `point.y` ahead of the drop's middle, in the frame of the
+    /// drop: the point on the plane, and the direction.
     pub(super) fn streak_path_line(
         &self,
         drop: &DropsDrop,
         instant: &StreakInstant,
-        offset: Vec2,
+        point: Vec2,
     ) -> [Vec3; 2] {
+        let [along, across] = streak_path_axes(drop);
+        let offset = across * (point.x * (1.0 + instant.funnel * point.y)) + along * point.y;
+        let through = across * point.x + along * (instant.follow * point.y);
         let towards = Vec3::from(drop.towards);
         let right = drop_glint_right(towards);
         let up = right.cross(towards);
-        let position = instant.middle + offset * instant.scale;
+        let position = instant.middle + through * instant.scale;
         let direction = towards + right * position.x + up * position.y;
         let direction = direction / direction.dot(direction).sqrt();
         let origin = right * offset.x + up * offset.y;

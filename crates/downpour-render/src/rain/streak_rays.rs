@@ -43,7 +43,12 @@ struct Row {
     rays: Vec<StreakRay>,
 }
 
-/// A point of the outline, across and along the motion, at an angle from the motion.
+/// Of the pixel that sees a point at a radius and an angle from the motion: the distance from the path, and how far ahead it is.
+fn streak_rays_beside(instant: &StreakInstant, radius: f32, c: f32, s: f32) -> Vec2 {
+    Vec2::new(radius * s / (1.0 + instant.funnel * radius * c), radius * c)
+}
+
+/// A point of the outline at an angle from the motion.
 fn streak_rays_outline(path: &StreakPath, drop: &DropsDrop, instant: &StreakInstant, angle: f32) -> Vec2 {
     let [along_axis, across_axis] = streak_path_axes(drop);
     let (c, s) = (ops::cos(angle), ops::sin(angle));
@@ -57,7 +62,8 @@ fn streak_rays_outline(path: &StreakPath, drop: &DropsDrop, instant: &StreakInst
     for _ in 0..STREAK_OUTLINE_STEPS {
         let time = instant.time - radius * c * instant.pace;
         let body = path.streak_path_body(coefficients, path.streak_path_displacement(drop, time));
-        let [origin, direction] = path.streak_path_line(drop, instant, way * radius);
+        let [origin, direction] =
+            path.streak_path_line(drop, instant, streak_rays_beside(instant, radius, c, s));
         along = mask_wobble_nearest(&body, origin.to_array(), direction.to_array(), along);
         let point = (origin + direction * along).to_array();
         let surface = mask_wobble_surface(&body.coefficients, body.state, point);
@@ -66,7 +72,7 @@ fn streak_rays_outline(path: &StreakPath, drop: &DropsDrop, instant: &StreakInst
         let next = radius - surface.excess / (gauge + 1.0) * gauge / slope;
         radius = next.clamp(STREAK_OUTLINE_MIN, STREAK_OUTLINE_MAX);
     }
-    Vec2::new(radius * s, radius * c)
+    streak_rays_beside(instant, radius, c, s)
 }
 
 /// Middle and half of the outline's width.
@@ -109,15 +115,13 @@ impl WithLanes for Rays<'_> {
         let lanes = Lanes::<S>::COUNT;
         debug_assert!(lanes <= MAX_LANES, "a machine with vectors of more than {MAX_LANES} numbers");
         let Self { path, drop, instant, points, rays } = self;
-        let [along_axis, across_axis] = streak_path_axes(drop);
         let coefficients = path.coefficients();
         for (points, rays) in points.chunks(lanes).zip(rays.chunks_mut(lanes)) {
             // Origin, direction, state, and both numbers of the spheroid; lanes past the end repeat the last ray.
             let mut numbers = [[0.0f32; MAX_LANES]; 11];
             for k in 0..lanes {
                 let point = points[k.min(points.len() - 1)];
-                let offset = along_axis * point.y + across_axis * point.x;
-                let [origin, direction] = path.streak_path_line(drop, instant, offset);
+                let [origin, direction] = path.streak_path_line(drop, instant, point);
                 let time = instant.time - point.y * instant.pace;
                 let body = path.streak_path_body(coefficients, path.streak_path_displacement(drop, time));
                 let [s2, s3, size] = body.state;
