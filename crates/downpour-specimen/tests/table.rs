@@ -234,7 +234,7 @@ fn a_lamp_lights_the_streak() {
 
 /// Lamps all around, every 30 degrees, from below to above. Where a drop shows little of a lamp, the light that leaves it after the
 /// third exit counts, which the table gives to all directions alike: of such lamps a few are beyond 6 % and the noise of the exact
-/// streak, none is beyond 15 %.
+/// streak, none is beyond a third.
 #[test]
 #[ignore = "a sweep of 84 lamps: run with --release"]
 fn lamps_all_around_light_the_streak() {
@@ -254,7 +254,7 @@ fn lamps_all_around_light_the_streak() {
     }
     let mean = sum / 84.0;
     println!("{over} of 84 beyond 6 % and the noise, the worst by {worst:.3}; the mean {mean:+.4}");
-    assert!(over <= 8 && worst < 0.15 && mean.abs() < 0.02, "{over}, {worst}, {mean}");
+    assert!(over <= 4 && worst < 0.33 && mean.abs() < 0.015, "{over}, {worst}, {mean}");
 }
 
 /// Three indices give three colors, each that of its index.

@@ -115,7 +115,10 @@ fn frames_do_not_depend_on_those_before() {
 /// steps count from time 0, and what it holds is asked of the camera at time 0.
 #[test]
 fn stepped_rain_is_that_of_the_time_at_any_frame_rate() {
-    let text = OPEN.replace("[rain]", "[rain]\nvolume = \"view\"");
+    let text = OPEN
+        .replace("[rain]", "[rain]\nvolume = \"view\"")
+        .replace("60", "300")
+        .replace("[48, 32]", "[96, 64]");
     let drops = |times: &[f64]| {
         let mut renderer = opened(&text);
         let last = times.iter().map(|&time| renderer.frame(time).unwrap().drops).last().unwrap();
