@@ -9,7 +9,6 @@ use downpour_math::rng::rng_pcg4d;
 use downpour_render::camera::Viewpoint;
 use downpour_shaders::Kernel;
 use downpour_shaders::render::scene::{SCENE_DOUBLE_SIDED, SCENE_MASKED};
-use downpour_shaders::sim::field::FIELD_SPLASH;
 use downpour_shaders::sim::field::{
     DRIFT, EYE_DROP, FIELD, FIELD_CLEAR_KERNEL, FIELD_FIND_KERNEL, SHELTER_AMONG_HOLES_KERNEL, SHELTER_KERNEL,
 };
@@ -405,7 +404,7 @@ fn crowns_case(gpu: &Gpu, kind: Kind) -> Result<Run, GpuError> {
     gpu.submit(&pass.dispatches())?;
     let (drops, [found, _]) = pass.read()?;
     assert!(found <= pass.room(), "{found} have no room");
-    let crowns = drops.iter().filter(|drop| drop.speed == FIELD_SPLASH);
+    let crowns = drops.iter().filter(|drop| drop.speed < 0.0);
     let mut others: BTreeMap<(u32, u32), EyeDrop> =
         crowns.map(|drop| ((drop.id, drop.id_low), *drop)).collect();
     let words = |drop: &EyeDrop| {

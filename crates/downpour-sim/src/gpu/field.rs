@@ -199,7 +199,7 @@ impl FieldPipeline {
         let to = ListOnGpu { drops: &drops, found: &found };
         let (resolved, columns) = (query.resolved, query.frame.columns);
         let of_picture =
-            self.search(buffers, (field, on), obstacles, (search.view, search.time_s), query, to)?;
+            self.search(buffers, (field, on), obstacles, (search.view, search.time_s), &query, to)?;
         let mut splashes = Vec::new();
         for slice in slices {
             let SplashSearch { slice, view, query, mut frame } = slice;
@@ -207,7 +207,7 @@ impl FieldPipeline {
             let counts = buffers.buffer("number of drops of a slice", 8, usage)?;
             let from = ListOnGpu { drops: &of_slice, found: &counts };
             let time_s = slice.middle_s();
-            let searched = self.search(buffers, (field, on), obstacles, (&view, time_s), query, from)?;
+            let searched = self.search(buffers, (field, on), obstacles, (&view, time_s), &query, from)?;
             (frame.first, frame.room) = (known, room);
             frame.pane = search.pane.unwrap_or_default();
             let uniform = buffers.uniform("splash frame", &frame)?;
@@ -236,7 +236,7 @@ impl FieldPipeline {
         (field, on): (&RainField, &mut FieldOnGpu),
         obstacles: &ObstaclesOnGpu<'_>,
         (view, time_s): (&View, f64),
-        query: FieldQuery,
+        query: &FieldQuery,
         to: ListOnGpu<'_>,
     ) -> Result<Search<'_>, GpuSimError> {
         let ListOnGpu { drops, found } = to;
@@ -254,7 +254,7 @@ impl FieldPipeline {
         }
         let mut shelter = None;
         if let Some(bounds) = obstacles.bounds {
-            let (frame, drift) = shelter_frame(field, on, &query, (obstacles, bounds), (view, time_s));
+            let (frame, drift) = shelter_frame(field, on, query, (obstacles, bounds), (view, time_s));
             let uniform = buffers.uniform("shelter frame", &frame)?;
             let drift = buffers.storage("drift of paths", &drift)?;
             let mut bound = vec![(1, obstacles.nodes), (2, obstacles.triangles)];
