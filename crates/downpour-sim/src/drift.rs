@@ -42,6 +42,7 @@ impl Drift {
     }
 
     /// The straight motion from a time to one `lasts_s` later, as it is in the middle between the two.
+    #[cfg(feature = "wgpu")]
     pub(crate) fn chord(from: &Self, to: &Self, lasts_s: f64) -> Self {
         let entry = |(a, b): (&[DVec3; 2], &[DVec3; 2])| [a[0].midpoint(b[0]), (b[0] - a[0]) / lasts_s];
         Self { table: from.table.iter().zip(&to.table).map(entry).collect() }

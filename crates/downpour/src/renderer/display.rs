@@ -1,5 +1,6 @@
 //! Frames for a display: pixels to look at, without their layers.
 
+#[cfg(feature = "wgpu")]
 use std::time::Instant;
 
 use downpour_render::picture::DeviceUse;
