@@ -106,7 +106,7 @@ fn hosts() -> Vec<Host> {
         host!(FieldClass as "FieldClass" in &sim::field::FIELD,
             seed, edge, period, first_node, first_threshold, portions, first_column, columns, counts, eye_column,
             eye_in_column, eye_periods, heights, drift, reach, middle, gauge, first_kept, least_units, kept_inverse,
-            farthest, unused, shift, margin),
+            farthest, margin, unused),
         host!(FieldFrame as "FieldFrame" in &sim::field::FIELD,
             sides, swept, velocity, half_shutter, turning, nearest, per_diameter, beyond, seconds, fraction,
             is_before, classes, columns, room, pane, first, begins, kept_row, radius),

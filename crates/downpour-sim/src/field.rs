@@ -48,6 +48,8 @@ use std::sync::Arc;
 
 use self::chain::{ChainCount, ChainSizes, FieldTime, field_fallen};
 pub(crate) use self::reach::Reach;
+#[cfg(feature = "wgpu")]
+pub(crate) use self::room::{ROOM, SPARE_ROOM};
 use self::thinning::Thinning;
 use crate::SimError;
 use crate::drift::Drift;
@@ -226,7 +228,7 @@ impl RainField {
                 continue;
             }
             let reach = Reach::of_view(view, least_pixels);
-            let (found, tried) = self.visible_of(class, view, &reach, time_s, &drift, |drop, _| Some(drop));
+            let (found, tried) = self.visible_of(class, view, &reach, time_s, &drift);
             drops.extend(found);
             simulated += tried;
         }
@@ -324,22 +326,20 @@ impl RainField {
         least
     }
 
-    /// What `make` makes of the drops of a class that a picture shows or that a search is for, with their terminal speeds; and how many
-    /// were looked at.
-    pub(crate) fn visible_of<T: Send>(
+    /// The drops of a class that a picture shows, and how many were looked at.
+    fn visible_of(
         &self,
         class: &Class,
         view: &View,
         reach: &Reach,
         time_s: f64,
         drift: &Drift,
-        make: impl Fn(FallingDrop, f64) -> Option<T> + Sync,
-    ) -> (Vec<T>, u64) {
+    ) -> (Vec<FallingDrop>, u64) {
         let sides = view.sides();
         let swept = view.swept_sides();
         let Some(seen) = class.seen(view, reach, drift) else { return (Vec::new(), 0) };
         let [xs, zs] = class.columns(&seen.bounds, drift);
-        let rows: Vec<(Vec<T>, u64)> = xs
+        let rows: Vec<(Vec<FallingDrop>, u64)> = xs
             .into_par_iter()
             .map(|ix| {
                 let (mut found, mut tried) = (Vec::new(), 0);
@@ -350,15 +350,14 @@ impl RainField {
                     if !within(&swept, middle - view.eye, seen.radius) {
                         continue;
                     }
-                    self.drops_of_column(class, [ix, iz], &seen.bounds, time_s, drift, |drop, speed| {
+                    self.drops_of_column(class, [ix, iz], &seen.bounds, time_s, drift, |drop, _| {
                         tried += 1;
                         let diameter = f64::from(drop.diameter);
                         let velocity = Vec3::from(drop.velocity).as_dvec3();
                         let (range, radius) = (reach.range(diameter), reach.radius(diameter));
                         let all = [f64::NEG_INFINITY, f64::INFINITY];
-                        let at = drop.position + reach.shift;
-                        if view.shows(&sides, at, velocity, radius, range, all) {
-                            found.extend(make(drop, speed));
+                        if view.shows(&sides, drop.position, velocity, radius, range, all) {
+                            found.push(drop);
                         }
                     });
                 }
@@ -434,7 +433,7 @@ impl RainField {
 pub(crate) struct SeenColumns {
     /// Bounds of the drops.
     pub(crate) bounds: Bounds,
-    /// From the middle of a column at height 0 to the middle of what is seen of this part of it, m.
+    /// From the middle of a column at height 0 to the middle of this part of it, m.
     pub(crate) middle: DVec3,
     /// Radius around that, with all margins, m.
     pub(crate) radius: f64,
@@ -444,15 +443,13 @@ impl Class {
     /// Part of its columns in which a search may find drops, if there is any.
     pub(crate) fn seen(&self, view: &View, reach: &Reach, drift: &Drift) -> Option<SeenColumns> {
         let margin = self.half_way(view, drift) + reach.radius(self.largest);
-        let seen = view.bounds(reach.range(self.largest), margin);
-        let seen = Bounds { low: seen.low - reach.shift, high: seen.high - reach.shift };
-        let bounds = seen.common(&reach.within)?;
+        let bounds = view.bounds(reach.range(self.largest), margin).common(&reach.within)?;
         let [least, most] = drift.span(self.speeds[0], self.speeds[1]);
         let (carried, spread) = (least.midpoint(most), 0.5 * (most - least).length());
         let height = (bounds.low.y + bounds.high.y) * 0.5;
         let half = (bounds.high.y - bounds.low.y) * 0.5;
         let radius = (0.5 * self.edge * self.edge + half * half).sqrt() + spread;
-        let middle = DVec3::new(carried.x, height, carried.z) + reach.shift;
+        let middle = DVec3::new(carried.x, height, carried.z);
         Some(SeenColumns { bounds, middle, radius: radius + margin })
     }
 

@@ -134,10 +134,8 @@ impl RainField {
         let obstacles = facets.obstacles;
         let [begin, end] = span_s;
         check_span(span_s)?;
-        let Some(root) = obstacles.nodes.first().filter(|_| !obstacles.triangles.is_empty()) else {
-            return Ok(Vec::new());
-        };
-        let corners = [root.low, root.high].map(|corner| Vec3::from(corner).as_dvec3() + obstacles.origin);
+        let Some(corners) = obstacles.corners() else { return Ok(Vec::new()) };
+        let corners = corners.map(|corner| corner.as_dvec3() + obstacles.origin);
         let ways = Ways::new(self, begin, end);
         let within = |class| {
             let OfClass { bounds: wide, in_part, wanted } = of_class(class)?;

@@ -52,7 +52,8 @@ pub struct Obstacles<'a> {
 
 impl Obstacles<'_> {
     /// Corners of the box around all of them, m, relative to their origin; `None` without obstacles.
-    pub(crate) fn corners(&self) -> Option<[Vec3; 2]> {
+    #[must_use]
+    pub fn corners(&self) -> Option<[Vec3; 2]> {
         let root = self.nodes.first().filter(|_| !self.triangles.is_empty())?;
         Some([root.low.into(), root.high.into()])
     }

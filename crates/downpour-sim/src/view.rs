@@ -145,8 +145,12 @@ impl View {
     /// Distance, in meters, up to which a drop of a diameter in meters has so many pixels.
     #[must_use]
     pub fn range(&self, diameter: f64, least_pixels: f64) -> f64 {
-        let range = diameter / (self.pixel_angle * least_pixels).max(1.0e-12);
-        range.min(self.far)
+        (diameter / self.least_angle(least_pixels)).min(self.far)
+    }
+
+    /// Width of so many pixels at distance 1.
+    pub(crate) fn least_angle(&self, least_pixels: f64) -> f64 {
+        (self.pixel_angle * least_pixels).max(1.0e-12)
     }
 
     /// Upper bound of the volume of the picture up to a distance.

@@ -215,8 +215,11 @@ impl Shower {
         let obstacles = obstacles(stage);
         let mut droplets = field.bounced(&obstacles, &view, least, time_s, &self.bounce)?;
         droplets.extend(self.drips(stage, &view, least, time_s)?);
+        #[cfg(feature = "wgpu")]
         let on_device =
-            self.splashes.filter(|options| crowns_on_device(options, field, stage, &view, time_s));
+            self.splashes.filter(|splashes| splashes.fits_device(field, &view, time_s, &obstacles));
+        #[cfg(not(feature = "wgpu"))]
+        let on_device = None;
         if let (Some(splashes), None) = (&self.splashes, on_device) {
             droplets.extend(field.splashes(&obstacles, &view, time_s, splashes)?);
         }
@@ -286,26 +289,6 @@ impl Shower {
             Form::Stepped(stepped) => Ok(stepped.measured_rate_mm_h()),
         }
     }
-}
-
-/// True if a GPU is to find the crowns of splashes.
-#[cfg(feature = "wgpu")]
-fn crowns_on_device(
-    options: &SplashOptions,
-    field: &RainField,
-    stage: &Stage,
-    view: &View,
-    time_s: f64,
-) -> bool {
-    let root = stage.data.nodes.first();
-    let corners = root.map(|root| [root.low, root.high].map(glam::Vec3::from));
-    corners.is_some_and(|corners| options.fits_device(field, view, time_s, corners, stage.origin))
-}
-
-/// True if a GPU is to find the crowns of splashes: there is none.
-#[cfg(not(feature = "wgpu"))]
-fn crowns_on_device(_: &SplashOptions, _: &RainField, _: &Stage, _: &View, _: f64) -> bool {
-    false
 }
 
 /// What stops drops in a scene.

@@ -41,10 +41,9 @@ struct FieldClass {
     kept_inverse: u32,
     // Largest distance of a drop of the class, m.
     farthest: f32,
-    unused: vec2u,
-    // Way from a drop to what is seen, m, and by how much that is larger than so many diameters, m.
-    shift: vec3f,
+    // By how much what is seen is larger than so many diameters, m.
     margin: f32,
+    unused: u32,
 }
 
 struct FieldFrame {
@@ -240,9 +239,7 @@ fn field_carried(speed: f32) -> FieldCarried {
 
 // True if the path of what is seen touches the picture, it is between the least distance and that up to which drops are searched for,
 // and beyond the pane if there is one.
-fn field_shows(seen: EyeDrop, kind: FieldClass) -> bool {
-    var drop = seen;
-    drop.offset += kind.shift;
+fn field_shows(drop: EyeDrop, kind: FieldClass) -> bool {
     let distance = sqrt(dot(drop.offset, drop.offset));
     let range = min(drop.diameter * field_frame.per_diameter + field_frame.beyond, kind.farthest);
     if distance < field_frame.nearest || distance > range {

@@ -7,6 +7,7 @@ use downpour_drop::splash::{FILM_M, SplashLaw};
 use downpour_gpu::{BufferPool, Gpu, GpuError};
 use downpour_math::rng::rng_pcg4d;
 use downpour_render::camera::Viewpoint;
+use downpour_render::gpu::LightingOnGpu;
 use downpour_shaders::Kernel;
 use downpour_shaders::render::scene::{SCENE_DOUBLE_SIDED, SCENE_MASKED};
 use downpour_shaders::sim::field::{
@@ -234,6 +235,27 @@ fn setting(kind: Kind) -> Setting {
     Setting { field, view, scene, origin }
 }
 
+/// A scene on the device.
+fn uploaded(gpu: &Gpu, scene: &SceneData) -> Result<LightingOnGpu, GpuError> {
+    let viewpoint = Viewpoint { eye: Vec3::ZERO, forward: Vec3::NEG_Z, up: Vec3::Y, fov_y: 0.9 };
+    let frame = RenderFrame::new(scene, &viewpoint, [8, 8], 1, 0, 0).expect("a frame");
+    ScenePipeline::new(gpu)?.upload(scene)?.lighting(gpu, &frame)
+}
+
+/// What stops drops in it.
+fn obstacles_on<'a>(
+    lighting: &'a LightingOnGpu,
+    scene: &SceneData,
+    has_holes: bool,
+    origin: DVec3,
+) -> ObstaclesOnGpu<'a> {
+    let [_, nodes, triangles, corners, table, texels] = &lighting.buffers;
+    let root = scene.nodes[0];
+    let bounds = Some([Vec3::from(root.low), Vec3::from(root.high)]);
+    let holes = has_holes.then_some(HolesOnGpu { corners, table, texels });
+    ObstaclesOnGpu { nodes, triangles, holes, bounds, origin }
+}
+
 fn found(gpu: &Gpu, kind: Kind) -> Result<Found, GpuError> {
     let Setting { field, view, scene, origin } = setting(kind);
     let holes = kind.has_holes.then_some(&scene as &dyn Holes);
@@ -246,14 +268,8 @@ fn found(gpu: &Gpu, kind: Kind) -> Result<Found, GpuError> {
     let all = listed(field.visible(&view, kind.time_s).expect("in range").drops);
     let open = listed(field.visible_among(&on_cpu, &view, kind.time_s).expect("in range").drops);
     let ids: BTreeSet<(u32, u32)> = open.iter().map(key).collect();
-    let root = scene.nodes[0];
-    let viewpoint = Viewpoint { eye: Vec3::ZERO, forward: Vec3::NEG_Z, up: Vec3::Y, fov_y: 0.9 };
-    let frame = RenderFrame::new(&scene, &viewpoint, [8, 8], 1, 0, 0).expect("a frame");
-    let lighting = ScenePipeline::new(gpu)?.upload(&scene)?.lighting(gpu, &frame)?;
-    let [_, nodes, triangles, corners, table, texels] = &lighting.buffers;
-    let bounds = Some([Vec3::from(root.low), Vec3::from(root.high)]);
-    let holes = kind.has_holes.then_some(HolesOnGpu { corners, table, texels });
-    let obstacles = ObstaclesOnGpu { nodes, triangles, holes, bounds, origin };
+    let lighting = uploaded(gpu, &scene)?;
+    let obstacles = obstacles_on(&lighting, &scene, kind.has_holes, origin);
     let pipeline = FieldPipeline::new(gpu)?;
     let mut on_gpu = pipeline.upload(&field)?;
     let of_gpu = |error| match error {
@@ -377,14 +393,8 @@ fn crowns_case(gpu: &Gpu, kind: Kind) -> Result<Run, GpuError> {
     let expected: Vec<EyeDrop> =
         crowns.iter().map(|drop| EyeDrop::new(drop, view.eye)).filter(is_outside).collect();
     assert!(expected.len() > 300, "{} crowns", expected.len());
-    let root = scene.nodes[0];
-    let viewpoint = Viewpoint { eye: Vec3::ZERO, forward: Vec3::NEG_Z, up: Vec3::Y, fov_y: 0.9 };
-    let frame = RenderFrame::new(&scene, &viewpoint, [8, 8], 1, 0, 0).expect("a frame");
-    let lighting = ScenePipeline::new(gpu)?.upload(&scene)?.lighting(gpu, &frame)?;
-    let [_, nodes, triangles, corners, table, texels] = &lighting.buffers;
-    let bounds = Some([Vec3::from(root.low), Vec3::from(root.high)]);
-    let holes = kind.has_holes.then_some(HolesOnGpu { corners, table, texels });
-    let obstacles = ObstaclesOnGpu { nodes, triangles, holes, bounds, origin };
+    let lighting = uploaded(gpu, &scene)?;
+    let obstacles = obstacles_on(&lighting, &scene, kind.has_holes, origin);
     let pipeline = FieldPipeline::new(gpu)?;
     let mut on_gpu = pipeline.upload(&field)?;
     let search = FieldSearch {

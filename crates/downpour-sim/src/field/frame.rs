@@ -59,12 +59,10 @@ pub struct FieldClass {
     pub kept_inverse: u32,
     /// Largest distance of a drop of the class, m.
     pub farthest: f32,
-    /// 0.
-    pub unused: [u32; 2],
-    /// Way from a drop to what is seen, m.
-    pub shift: Vec3,
     /// Distance, m, by which what is seen is larger than so many diameters.
     pub margin: f32,
+    /// 0.
+    pub unused: u32,
 }
 
 /// Uniforms of the search for the drops of a picture.
@@ -263,7 +261,6 @@ impl Class {
             reach: seen.radius as f32,
             middle: (seen.middle.y - view.eye.y) as f32,
             farthest: reach.farthest as f32,
-            shift: reach.shift.as_vec3(),
             margin: reach.margin as f32,
             ..FieldClass::default()
         })

@@ -19,8 +19,6 @@ pub(crate) struct Reach {
     pub(crate) radius: f64,
     /// See `radius`.
     pub(crate) margin: f64,
-    /// Way from the drop to what is seen, m.
-    pub(crate) shift: DVec3,
     /// Box in which all drops are that the search is for.
     pub(crate) within: Bounds,
 }
@@ -29,12 +27,11 @@ impl Reach {
     /// For the drops of a picture that have so many pixels.
     pub(crate) fn of_view(view: &View, least_pixels: f64) -> Self {
         Self {
-            angle: (view.pixel_angle * least_pixels).max(1.0e-12),
+            angle: view.least_angle(least_pixels),
             beyond: 0.0,
             farthest: view.far,
             radius: f64::from(FIELD_RADIUS),
             margin: 0.0,
-            shift: DVec3::ZERO,
             within: Bounds { low: DVec3::NEG_INFINITY, high: DVec3::INFINITY },
         }
     }

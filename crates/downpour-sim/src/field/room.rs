@@ -7,8 +7,8 @@ use crate::resolved::Resolved;
 use crate::view::View;
 
 /// Room beyond what is expected, for chance and for classes of few drops.
-const ROOM: f64 = 1.25;
-const SPARE_ROOM: f64 = 4096.0;
+pub(crate) const ROOM: f64 = 1.25;
+pub(crate) const SPARE_ROOM: f64 = 4096.0;
 
 /// Drops of so many pixels are so rare that there is room for them.
 const MAX_LEAST_PIXELS: f64 = 1.0e4;

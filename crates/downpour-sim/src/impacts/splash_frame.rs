@@ -16,16 +16,13 @@ use super::slices::Slice;
 use super::splashes::LEAST_PIXELS;
 use crate::falling::EyeDrop;
 use crate::field::frame::{FieldQuery, field_normals};
-use crate::field::{Class, RainField, Reach};
+use crate::field::{Class, ROOM, RainField, Reach, SPARE_ROOM};
 use crate::resolved::Resolved;
+use crate::shelter::Obstacles;
 use crate::view::{Bounds, View};
 
 /// Length of the slices of time in which impacts are searched, s: longer than that of crowns.
 const SLICE_S: f64 = 1.0 / 16.0;
-
-/// Room for drops of a slice beyond what is expected, for chance and for classes of few drops.
-const ROOM: f64 = 1.25;
-const SPARE_ROOM: f64 = 4096.0;
 
 /// Uniforms of the crowns of a slice.
 #[repr(C)]
@@ -74,17 +71,17 @@ const MOST_DROPS: f64 = 4_194_304.0;
 const MOST_CROWNS: u32 = 65_536;
 
 impl SplashOptions {
-    /// True if a GPU is to find the crowns of a picture at a time in s; `corners` are those of all obstacles, relative to `origin`.
+    /// True if a GPU is to find the crowns of a picture at a time in s.
     #[must_use]
     pub fn fits_device(
         &self,
         field: &RainField,
         view: &View,
         time_s: f64,
-        corners: [Vec3; 2],
-        origin: DVec3,
+        obstacles: &Obstacles<'_>,
     ) -> bool {
-        let searches = self.searches(field, view, time_s, (corners, origin));
+        let Some(corners) = obstacles.corners() else { return true };
+        let searches = self.searches(field, view, time_s, (corners, obstacles.origin));
         searches.iter().map(|search| f64::from(search.frame.drops)).sum::<f64>() <= MOST_DROPS
     }
 
@@ -125,7 +122,7 @@ impl SplashOptions {
                 now: (time_s - middle_s) as f32,
                 strength: self.law.strength() as f32,
                 radius: (self.law.unit_radius() * self.size) as f32,
-                per_radius: (2.0 / (view.pixel_angle * LEAST_PIXELS).max(1.0e-12)) as f32,
+                per_radius: (2.0 / view.least_angle(LEAST_PIXELS)) as f32,
                 farthest: view.far as f32,
                 drops: query.frame.room,
                 ..SplashFrame::zeroed()
@@ -154,12 +151,11 @@ impl SplashOptions {
             let radius = widest.get(class.number).copied().flatten()?;
             let range = view.range(2.0 * radius, LEAST_PIXELS);
             (range >= view.near).then(|| Reach {
-                angle: (view.pixel_angle * LEAST_PIXELS).max(1.0e-12) / (2.0 * ratio),
+                angle: view.least_angle(LEAST_PIXELS) / (2.0 * ratio),
                 beyond,
                 farthest: range + beyond,
                 radius: 0.0,
                 margin: 1.5 * radius,
-                shift: DVec3::ZERO,
                 within,
             })
         }
