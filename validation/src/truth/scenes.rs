@@ -55,8 +55,9 @@ pub(super) fn compare(
         misses.extend(above);
     }
     let [width, height] = SIZE;
+    let rays = options.sky_rays.map_or(String::new(), |rays| format!(" --sky-rays {rays}"));
     let text = format!(
-        "# Scenes and Mitsuba\n\n`downpour render --rate 0` at {width} x {height} with its usual samples against Mitsuba's path tracer, on \
+        "# Scenes and Mitsuba\n\n`downpour render --rate 0{rays}` at {width} x {height} against Mitsuba's path tracer, on \
          surfaces. `noise`: FLIP between two halves of Mitsuba's own samples. `mirrored`: our picture the wrong way round, which \
          has to be seen.\n\n\
          | scene | surfaces | mean FLIP | luminance | noise | FLIP mirrored |\n|---|---|---|---|---|---|\n{}\n",
@@ -143,6 +144,7 @@ impl Scene {
         let mut command = run::command(&program.display().to_string(), &["render", "--backend", "cpu"]);
         let status = command
             .args(["--quiet", "--overwrite", "--asset-root", "/"])
+            .args(options.sky_rays.map(|rays| format!("--sky-rays={rays}")))
             .arg(&weather)
             .arg("--output")
             .arg(&ours)

@@ -221,6 +221,46 @@ fn layers_add_up_to_the_picture() {
     assert_eq!(depth[0], 1.0e30, "the sky is far");
 }
 
+/// A box of 100 m holds far more drops than are simulated: small ones are unresolved, and what the statistics say of the two
+/// is all of the rain. The rate above the least diameter is that of Marshall and Palmer with the fall speeds of Beard.
+#[test]
+fn a_large_box_has_all_of_its_rain() {
+    let rain = "distribution = 'marshall-palmer'\nvolume = 'box'\nbox_m = 100\nmax_drops = 30000\nseed = 7\n";
+    let weather = weather("").replace("rate_mm_h = 400\nseed = 7\n", &format!("rate_mm_h = 10\n{rain}"));
+    let ended = storm(&["render", "-o", "rain.png", "--stats", "stats.json"])
+        .with_file("storm.toml", weather)
+        .run()
+        .succeeded();
+    let stats: serde_json::Value = serde_json::from_slice(&ended.file("stats.json")).unwrap();
+    let number = |key: &str| stats[key].as_f64().unwrap_or_else(|| panic!("{key} of {stats}"));
+    let speed = |mm: f64| terminal_speed(FallSpeedModel::Beard1976, mm * 1.0e-3, &Air::standard()).unwrap();
+    let flux = |mm: f64| ops::exp(-4.1 * ops::pow(10.0, -0.21) * mm) * mm * mm * mm * speed(mm);
+    let rate = |from: f64| {
+        let step = (8.0 - from) / 4000.0;
+        (0..4000).map(|k| flux(from + (f64::from(k) + 0.5) * step)).sum::<f64>() * step
+    };
+    let from_mm = number("resolved_from_mm");
+    let small = 10.0 * (1.0 - rate(from_mm) / rate(0.1));
+    let drops = number("drops_simulated");
+    println!(
+        "{drops} drops from {from_mm} mm: {} and {} mm/h",
+        number("measured_rate_mm_h"),
+        number("unresolved_rate_mm_h")
+    );
+    assert!((20_000.0..=31_000.0).contains(&drops) && from_mm > 1.0, "{stats}");
+    assert!(
+        (number("unresolved_rate_mm_h") / small - 1.0).abs() < 0.005,
+        "{small} mm/h are of small drops, {stats}"
+    );
+    let all = number("measured_rate_mm_h") + number("unresolved_rate_mm_h");
+    // As many large drops scatter by 1 %, of a quarter of the rate.
+    assert!((all / 10.0 - 1.0).abs() < 0.01, "{all} mm/h in all, {stats}");
+    assert!(
+        (0.5..1.0).contains(&number("unresolved_fraction")) && number("resolved_to_m") == 50.0,
+        "{stats}"
+    );
+}
+
 /// As documented for `--stats` and `--dump-drops`. The rate that the drops carry is the requested one.
 #[test]
 fn statistics_and_drops_agree() {

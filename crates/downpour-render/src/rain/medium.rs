@@ -123,8 +123,14 @@ impl RainMedium {
         let (mut all, mut above, mut rate_mm_h) = (0.0, 0.0, 0.0);
         let (mut weight, mut row) = (0.0, 0.0);
         let mut diameters = 0.0;
-        for [lower, upper] in rain.diameter_classes(BINS_PER_OCTAVE) {
-            // A last sliver would be too thin a bin.
+        // A bin on both sides of the least diameter of the list would count as listed as a whole.
+        let cut = resolved.min_diameter;
+        let bins = rain.diameter_classes(BINS_PER_OCTAVE).into_iter().flat_map(|[lower, upper]| {
+            let between = cut.clamp(lower, upper);
+            [[lower, between], [between, upper]]
+        });
+        for [lower, upper] in bins {
+            // A sliver would be too thin a bin.
             if upper - lower <= 1.0e-6 {
                 continue;
             }

@@ -30,6 +30,7 @@ pub(super) fn stats(frame: &Frame, computer: &Computer, weather: &Weather) -> Va
         "unresolved_rate_mm_h": number(medium.unresolved_rate_mm_h()),
         "unresolved_fraction": number(medium.unresolved_fraction()),
         "resolved_to_m": number(drops.resolved.far),
+        "resolved_from_mm": number(1.0e3 * drops.resolved.min_diameter),
         "least_pixels": number(drops.resolved.least_pixels),
         "time_s": number(frame.time_s),
         "seed": rain.seed,
