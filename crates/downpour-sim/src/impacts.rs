@@ -97,6 +97,11 @@ struct OfClass<P, W> {
 const CURVED_M: f64 = 0.5;
 
 impl RainField {
+    /// Distance, m, of a path of less than a second from the line between its ends, at most.
+    fn curved(&self) -> f64 {
+        if self.wind.is_steady() { 0.01 } else { CURVED_M }
+    }
+
     /// Impacts in a box within a span of time, s, without its beginning and including its end, of drops from a
     /// diameter in m on. Their order depends on the query only.
     ///
@@ -167,11 +172,14 @@ impl RainField {
         let Some(paths) = SkyPaths::new(obstacles, &self.wind, begin, slowest, deepest) else {
             return Ok(Vec::new());
         };
+        let curved = self.curved();
         let in_box = |(class, wanted, bounds, swept): (&Class, &W, Bounds, Bounds)| {
             self.gathered(class, &swept, end, ways.last(), |drop, speed| {
                 let start = ways.at_begin(drop, speed);
                 let ends = [start, drop.position];
-                if !wanted(&Candidate { id: drop.id, diameter: drop.diameter, speed, ends }) {
+                if !touches(ends, &bounds, curved)
+                    || !wanted(&Candidate { id: drop.id, diameter: drop.diameter, speed, ends })
+                {
                     return None;
                 }
                 let (hit, from, velocity, time_s) = ways.first_met(obstacles, drop, speed)?;
@@ -189,6 +197,19 @@ impl RainField {
         let impacts: Vec<Vec<T>> = boxes.into_par_iter().map(in_box).collect();
         Ok(impacts.into_iter().flatten().collect())
     }
+}
+
+/// False if a line between two places, m, keeps farther than `margin` from a box.
+fn touches([from, to]: [DVec3; 2], bounds: &Bounds, margin: f64) -> bool {
+    let middle = bounds.low.midpoint(bounds.high);
+    let half = 0.5 * (bounds.high - bounds.low) + margin;
+    let (center, reach) = (from.midpoint(to) - middle, 0.5 * (to - from));
+    // The axes of the box, and those across the line and one of them.
+    let across = |axis: DVec3| {
+        let normal = reach.cross(axis);
+        center.dot(normal).abs() <= half.dot(normal.abs()) + 1.0e-9
+    };
+    center.abs().cmple(half + reach.abs()).all() && across(DVec3::X) && across(DVec3::Y) && across(DVec3::Z)
 }
 
 /// Fails for a span of time that is too long, or of times that are out of range.

@@ -7,7 +7,7 @@ use downpour_shaders::sim::step::{STEP_CLEAR, VOLUME_RADIUS};
 use glam::DVec3;
 
 use super::places::Places;
-use super::{CURVED_M, Candidate, Impact, MAX_SPAN_S, OfClass};
+use super::{Candidate, Impact, MAX_SPAN_S, OfClass};
 use crate::SimError;
 use crate::drift::Drift;
 use crate::facets::Facets;
@@ -21,8 +21,11 @@ use crate::view::{Bounds, View, within};
 /// Interval at which the path of a droplet is divided, s.
 const FINE_S: f64 = 1.0 / 60.0;
 
-/// Approximate span of time in which impacts of droplets are searched at once, s: that of the slips of droplets. In a wind those of a
-/// slice come from nearby.
+/// Distance that the wind carries droplets, at most about, in a span of time in which impacts are searched at once, m: those of a span
+/// come from nearby.
+const SLICE_M: f64 = 1.5;
+
+/// Least span of time in which impacts are searched at once, s: that of the slips of droplets.
 const SLICE_S: f64 = 0.125;
 
 /// Dimension of the random numbers of rebounds.
@@ -60,9 +63,12 @@ impl RainField {
         };
         let sides = view.sides();
         let swept_sides = view.swept_sides();
-        // In slices of time: within one, the wind has displaced all droplets similarly.
+        // In slices of time: within one, the wind has displaced all droplets similarly. Without wind it is one, since each slice looks
+        // at the same chains of drops.
         let span = longest + view.shutter_s;
-        let slices = (span / SLICE_S).ceil().max(1.0);
+        let slices =
+            (self.carried(time_s - span + half, time_s + half) / SLICE_M).min(span / SLICE_S).ceil().max(1.0);
+        let curved = self.curved();
         let facets = Facets::new(obstacles);
         let mut places = Places::new(obstacles, 0.0);
         let mut droplets = Vec::new();
@@ -73,10 +79,14 @@ impl RainField {
                 let origins = travels.origins(self, class, view, least_pixels, bounce)?;
                 let (bounds, swept_sides) = (origins.bounds, &swept_sides);
                 let in_part = move |place: &Bounds| origins.may_be_in(place, view, swept_sides);
+                let travels = &travels;
                 let wanted = move |drop: &Candidate| {
-                    let [from, to] = drop.ends;
-                    let path = Bounds { low: from.min(to) - CURVED_M, high: from.max(to) + CURVED_M };
-                    sent_up(drop.id) && origins.may_be_in(&path, view, swept_sides)
+                    sent_up(drop.id) && {
+                        let range = view.range(f64::from(drop.diameter * bounce.size), least_pixels);
+                        let (middle, radius) = travels.ball(self, drop, bounce);
+                        let (offset, radius) = (middle - view.eye, radius + curved + origins.margin);
+                        offset.length() - radius <= range && within(swept_sides, offset, radius)
+                    }
                 };
                 Some(OfClass { bounds, in_part, wanted })
             };
@@ -117,6 +127,15 @@ impl RainField {
     }
 }
 
+impl RainField {
+    /// Distance that the wind carries the drops that follow it best, from a time to another, m.
+    fn carried(&self, begin_s: f64, end_s: f64) -> f64 {
+        let slowest = self.classes.iter().map(|class| class.speeds[0]).fold(f64::INFINITY, f64::min);
+        let [from, to] = [begin_s, end_s].map(|time| Drift::new(&self.wind, time).of(slowest)[0]);
+        if slowest.is_finite() { from.distance(to) } else { 0.0 }
+    }
+}
+
 /// Displacement of droplets of some age.
 struct Travels {
     /// Ages, s, the smaller not below 0.
@@ -130,6 +149,30 @@ impl Travels {
         let ages = ages.map(|age| age.max(0.0));
         let at = |age: f64| Drift::new(&field.wind, time_s - age);
         Self { ages, drifts: [at(0.0), at(ages[1]), at(ages[0])] }
+    }
+
+    /// Ball in which the droplet of a drop is at the picture's time, wherever on its path the drop has hit something: middle, and
+    /// radius, m, in a wind that is steady meanwhile.
+    fn ball(&self, field: &RainField, drop: &Candidate, bounce: &Bounce) -> (DVec3, f64) {
+        let speed = field.speed.at(f64::from(drop.diameter * bounce.size)).unwrap_or(0.0);
+        let [now, oldest, youngest] = &self.drifts;
+        let (carried, fall) = (now.of(speed)[0], DVec3::Y * speed);
+        let wind = oldest.of(drop.speed)[1].length().max(now.of(drop.speed)[1].length());
+        let leaves = leaving_speed(bounce, drop.speed, wind);
+        let lasts = self.ages.map(|age| slip_lasts(age, speed));
+        // Without its slip it would have followed the wind from the hit on; the path of the drop and the way from there are lines.
+        let from = [(0, oldest, 1), (1, youngest, 0)].map(|(end, then, age)| {
+            let [displacement, velocity] = then.of(speed);
+            let followed = carried - displacement - fall * self.ages[age];
+            (drop.ends[end] + followed, velocity - fall)
+        });
+        let slip = from[0].1.length().max(from[1].1.length());
+        let mean = 0.5 * (lasts[0] + lasts[1]);
+        let middle = from[0].0.midpoint(from[1].0) - from[0].1.midpoint(from[1].1) * mean;
+        let radius =
+            0.5 * from[0].0.distance(from[1].0) + 0.5 * (lasts[1] - lasts[0]) * slip + leaves * lasts[1];
+        // Across the fall the slip lasts twice as long as along it.
+        (middle, radius + 0.5 * mean * slip)
     }
 
     /// Origins of droplets that a picture shows, of the drops of a class.
@@ -148,21 +191,14 @@ impl Travels {
         }
         let speeds = [class.speeds[0] * 0.2 * size, field.speed.at(class.largest * size).unwrap_or(0.0)];
         let [now, oldest, youngest] = &self.drifts;
-        // The rebounding part of a drop's velocity.
         let wind = oldest.of(class.speeds[1])[1].length().max(now.of(class.speeds[1])[1].length());
-        let rebounds = f64::from(bounce.restitution.max(1.0 - bounce.grip));
-        let leaves = rebounds * ops::hypot(class.speeds[1], wind);
-        // Seconds for which a velocity that decays counts.
-        let lasts = |age: f64, speed: f64| {
-            let time = relaxation(speed).horizontal_s.max(1.0e-9);
-            time * (1.0 - ops::exp(-age / time))
-        };
-        let own = leaves * lasts(self.ages[1], speeds[1]);
+        let leaves = leaving_speed(bounce, class.speeds[1], wind);
+        let own = leaves * slip_lasts(self.ages[1], speeds[1]);
         // Displacement by the wind of a drop that takes its velocity on.
         let carried = speeds.iter().flat_map(|&speed| {
             [(oldest, self.ages[1]), (youngest, self.ages[0])].map(|(then, age)| {
                 let [displacement, velocity] = then.of(speed);
-                now.of(speed)[0] - displacement - velocity * lasts(age, speed)
+                now.of(speed)[0] - displacement - velocity * slip_lasts(age, speed)
             })
         });
         let (low, high) = carried
@@ -177,6 +213,17 @@ impl Travels {
         let bounds = Bounds { low: seen.low - way.high, high: seen.high - way.low };
         Some(Origins { bounds, way, range, margin })
     }
+}
+
+/// Maximum speed, m/s, with which a droplet leaves a surface that a drop with a terminal speed hits in a wind, m/s.
+fn leaving_speed(bounce: &Bounce, speed: f64, wind: f64) -> f64 {
+    f64::from(bounce.restitution.max(1.0 - bounce.grip)) * ops::hypot(speed, wind)
+}
+
+/// Seconds for which the slip of a droplet with a terminal speed counts up to an age, s, across the fall.
+fn slip_lasts(age_s: f64, speed: f64) -> f64 {
+    let time = relaxation(speed).horizontal_s.max(1.0e-9);
+    time * (1.0 - ops::exp(-age_s / time))
 }
 
 /// Where the droplets of a class that a picture shows come from.
