@@ -215,3 +215,25 @@ fn a_circle_is_found() {
     assert!(circle(&imports(&[("a", "b"), ("b", "c"), ("a", "c"), ("c", "d")])).is_none());
     assert_eq!(names_after("use crate::{a::B, c}; x(crate::d::E)", "crate::"), ["a", "c", "d"]);
 }
+
+/// The files that ARCHITECTURE.md says an effect goes to are there, and the numbered ones are fewer than fifteen.
+#[test]
+fn an_effect_goes_to_files_that_are_there() {
+    let text = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    let section = text.split("\n## ").find(|section| section.starts_with("Where an effect goes")).unwrap();
+    let paths = |text: &str| -> BTreeSet<String> {
+        let quoted = text.split('`').skip(1).step_by(2);
+        quoted.filter(|word| word.contains('/')).map(str::to_owned).collect()
+    };
+    for path in paths(section) {
+        assert!(root().join(&path).is_file(), "{path} is not there");
+    }
+    let is_numbered = |line: &&str| line.starts_with(|c: char| c.is_ascii_digit());
+    let lines: Vec<&str> = section.lines().filter(is_numbered).collect();
+    let listed = paths(&lines.join("\n"));
+    assert!(listed.len() == lines.len() && (1..15).contains(&listed.len()), "{} files", listed.len());
+    for path in &listed {
+        let text = fs::read_to_string(root().join(path)).unwrap().to_lowercase();
+        assert!(path.ends_with("goldens.rs") || text.contains("splash"), "{path} has nothing of splashes");
+    }
+}
