@@ -43,6 +43,30 @@ pub fn packing_octahedral_decode(square: [f32; 2]) -> [f32; 3] {
     [x * inverse, y * inverse, z * inverse]
 }
 
+/// Texel of an octahedral map of `size` texels along an edge. Beyond an edge, the map continues mirrored about the edge's middle.
+///
+/// ```
+/// use downpour_math::packing::packing_octahedral_texel;
+/// assert_eq!(packing_octahedral_texel(8, 3, 5), [3, 5]);
+/// assert_eq!(packing_octahedral_texel(8, -1, 2), [0, 5]);
+/// assert_eq!(packing_octahedral_texel(8, 8, 8), [0, 0]);
+/// ```
+#[inline]
+#[must_use]
+pub fn packing_octahedral_texel(size: u32, column: i32, row: i32) -> [u32; 2] {
+    let edge = size as i32;
+    let (mut x, mut y) = (column, row);
+    if x < 0 || x >= edge {
+        x = x.clamp(0, edge - 1);
+        y = edge - 1 - y;
+    }
+    if y < 0 || y >= edge {
+        y = y.clamp(0, edge - 1);
+        x = edge - 1 - x;
+    }
+    [x.clamp(0, edge - 1) as u32, y.clamp(0, edge - 1) as u32]
+}
+
 /// Packs two numbers in [-1, 1] into 16 bits each, as WGSL's `pack2x16snorm`.
 #[inline]
 #[must_use]

@@ -32,7 +32,7 @@ use super::{Image, SpecimenError, SpecimenLamp};
 use downpour_render::camera::Viewpoint;
 use downpour_render::light::LightSource;
 use downpour_render::picture::{PictureOptions, through_rain};
-use downpour_render::rain::drops_mask::drops_mask_right;
+use downpour_render::rain::glint::drop_glint_right;
 use downpour_render::rain::light::DropLights;
 use downpour_render::rain::masks::{DIAMETER_STEP, DIAMETERS};
 use downpour_render::rain::{
@@ -309,5 +309,5 @@ fn set_phases(drop: &mut DropsDrop, options: &SpecimenOptions) {
         *begin = (f64::from(*begin) + late).rem_euclid(1.0) as f32;
     }
     let [_, a31] = options.oscillation.pair();
-    drop.mode_phase[1] = a31 as f32 * drops_mask_right(drop.towards.into()).x;
+    drop.mode_phase[1] = a31 as f32 * drop_glint_right(drop.towards.into()).x;
 }

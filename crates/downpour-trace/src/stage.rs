@@ -15,6 +15,7 @@ mod sky;
 #[cfg(test)]
 mod tests;
 
+use downpour_math::color::color_luminance;
 use downpour_math::in_range;
 use std::borrow::Cow;
 
@@ -22,14 +23,14 @@ use downpour_scene::scene::{Play, Pose};
 use downpour_sim::field::FallingDrop;
 use downpour_sim::view::View;
 use downpour_weather::{self as weather, Loaded, Reloaded, Weather};
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use crate::builder::SceneBuilder;
 use crate::data::SceneData;
 use crate::wet::SceneWetness;
 use downpour_render::RenderError;
 use downpour_render::camera::{EyeMotion, MAX_EXPOSURE_S, PictureEdge, Viewpoint, check_size};
-use downpour_render::tone::{GRAY, tone_automatic_exposure, tone_luminance};
+use downpour_render::tone::{GRAY, tone_automatic_exposure};
 pub use error::StageError;
 pub use eye::CameraChoice;
 use eye::CameraView;
@@ -269,7 +270,7 @@ impl Stage {
     /// before darkness are many, and not what a picture is exposed for.
     #[must_use]
     pub fn exposure(&self, clean: &[[f32; 4]]) -> f32 {
-        let luminance = |&[r, g, b, _]: &[f32; 4]| tone_luminance(Vec3::new(r, g, b));
+        let luminance = |&[r, g, b, _]: &[f32; 4]| color_luminance([r, g, b]);
         // The disk of the sun, a million times brighter than all else, is not to make that dark.
         let most = GRAY / tone_automatic_exposure(clean) * BRIGHTEST;
         let (sum, count) = clean

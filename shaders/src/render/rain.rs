@@ -309,7 +309,7 @@ pub static DROPS_MASK: Module = Module {
 pub static DROPS_SHADE: Module = Module {
     path: "render/drops_shade.wgsl",
     wgsl: include_str!("../../wgsl/render/drops_shade.wgsl"),
-    uses: &[&RAIN_CONSTANTS, &PACKING, &DROPS_FRAME, &DROPS_CAPTURE, &DROPS_MASK],
+    uses: &[&RAIN_CONSTANTS, &PACKING, &DROPS_FRAME, &DROPS_CAPTURE, &DROPS_MASK, &DROP_GLINT],
 };
 
 /// Part of the exposure in which a ray passes a drop that moves, and the position there. Twin:

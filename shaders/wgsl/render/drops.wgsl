@@ -27,7 +27,7 @@ fn drops_facing(index: u32, drop: DropsDrop, x: f32, y: f32) -> vec3f {
     if drops_frame.atlas > 0u || drops_frame.glints < 2u || drops_light[row + 1u].w >= 0.0 {
         return light;
     }
-    let right = drops_mask_right(drop.towards);
+    let right = drop_glint_right(drop.towards);
     let up = cross(right, drop.towards);
     let turned = drops_mask_unit(drops_mask_at(drop.mask_index, x, y).reflected + vec3f(0.0, 0.0, 1.0));
     let normal = right * turned.x + up * turned.y - drop.towards * turned.z;
@@ -106,7 +106,7 @@ fn drops_still(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
     if small && spread <= 0.0 {
         return vec4f(0.0);
     }
-    let right = drops_mask_right(drop.towards);
+    let right = drop_glint_right(drop.towards);
     let up = cross(right, drop.towards);
     let n = select(drop.grid, DROPS_SMALL_GRID, small);
     let extent = drop.half_extent * drop.slope;
@@ -188,7 +188,7 @@ fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
         let mean = streak_lookup_mean(drop.shape, position) + drops_beads(index, drop, x, y);
         return vec4f(mean, 1.0) * cover;
     }
-    let right = drops_mask_right(drop.towards);
+    let right = drop_glint_right(drop.towards);
     let up = cross(right, drop.towards);
     let shift = vec2f(drops_shift(y), drops_shift(x));
     var sum = vec4f(0.0);
@@ -229,7 +229,7 @@ fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
 
 // Position on the plane at distance 1 through a drop's center, along the right and up of its view, of a place on the picture.
 fn drops_position(drop: DropsDrop, x: f32, y: f32) -> vec2f {
-    let right = drops_mask_right(drop.towards);
+    let right = drop_glint_right(drop.towards);
     let lean = drops_on_plane(drop.towards, camera_ray(drops_frame.camera, x, y));
     return vec2f(dot(lean, right), dot(lean, cross(right, drop.towards)));
 }

@@ -159,19 +159,9 @@ fn glass_picture_texel(level: u32, column: i32, row: i32) -> vec4f {
 fn glass_picture_round_texel(level: u32, column: i32, row: i32) -> vec4f {
     let whole = glass_picture_frame.capture_size;
     let size = whole >> level;
-    let edge = i32(size);
-    var x = column;
-    var y = row;
-    if x < 0 || x >= edge {
-        x = clamp(x, 0, edge - 1);
-        y = edge - 1 - y;
-    }
-    if y < 0 || y >= edge {
-        y = clamp(y, 0, edge - 1);
-        x = edge - 1 - x;
-    }
+    let texel = packing_octahedral_texel(size, column, row);
     let first = 4u * (whole * whole - size * size) / 3u;
-    return glass_picture_capture[first + u32(clamp(y, 0, edge - 1)) * size + u32(clamp(x, 0, edge - 1))];
+    return glass_picture_capture[first + texel.y * size + texel.x];
 }
 
 // A level of the picture or of the capture at a position in [0, 1], bilinear.

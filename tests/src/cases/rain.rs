@@ -9,7 +9,6 @@ use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_render::camera::Viewpoint;
 use downpour_render::gpu::RainPipeline;
 use downpour_render::picture::compose_pixel;
-use downpour_render::rain::drops_mask::drops_mask_right;
 use downpour_render::rain::light::{DropLightForm, DropLightOptions};
 use downpour_render::rain::medium::fog::medium_fog_depth;
 use downpour_render::rain::streak::streak_weight;
@@ -25,7 +24,7 @@ use downpour_shaders::render::medium::{
     MEDIUM, MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL,
 };
 use downpour_shaders::render::rain::{
-    COMPOSE, COMPOSE_KERNEL, DROPS_KERNEL, DROPS_MASK, STREAK, STREAK_CELL, STREAK_LIGHT_KERNEL, STREAK_RAYS,
+    COMPOSE, COMPOSE_KERNEL, DROPS_KERNEL, STREAK, STREAK_CELL, STREAK_LIGHT_KERNEL, STREAK_RAYS,
     STREAK_RAYS_KERNEL, STREAK_SPAN, STREAK_TABLE_KERNEL,
 };
 use downpour_shaders::render::scene::TRACE_KERNEL;
@@ -40,7 +39,7 @@ use glam::{DVec3, Vec3, Vec4};
 
 use super::drop_light::atlas;
 use super::scene::scene;
-use crate::Domain::{Made, Uniform, Unit3};
+use crate::Domain::{Made, Uniform};
 use crate::compare::{Cpu, Gpu as FromGpu, POISON};
 use crate::function::Run;
 use crate::kept::kept;
@@ -474,13 +473,6 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 let span = StreakSpan { before, after, first, last, parallel, funnel };
                 streak_span_time(&span, a.f32()).words()
             },
-        ),
-        FunctionCase::new(
-            "drops_mask_right",
-            &DROPS_MASK,
-            &[Unit3],
-            Tol::relative(1.0e-6, 1.0e-7, "a square root and a division (2.5 ulp)"),
-            |a| drops_mask_right(Vec3::from(a.f32s())).to_array().words(),
         ),
         FunctionCase::new(
             "streak_cell_position",

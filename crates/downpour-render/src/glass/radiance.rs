@@ -2,7 +2,7 @@
 //! Twin of a part of `shaders/wgsl/render/glass_picture.wgsl`.
 
 use downpour_math::ops;
-use downpour_math::packing::packing_octahedral_encode;
+use downpour_math::packing::{packing_octahedral_encode, packing_octahedral_texel};
 use downpour_shaders::render::glass::GLASS_PICTURE_FAR;
 use glam::{IVec2, UVec2, Vec2, Vec3, Vec4};
 
@@ -21,18 +21,8 @@ impl Look<'_> {
     fn glass_picture_round_texel(&self, level: u32, column: i32, row: i32) -> Vec4 {
         let whole = self.glass.frame.capture_size;
         let size = whole >> level;
-        let edge = size as i32;
-        let (mut x, mut y) = (column, row);
-        if x < 0 || x >= edge {
-            x = x.clamp(0, edge - 1);
-            y = edge - 1 - y;
-        }
-        if y < 0 || y >= edge {
-            y = y.clamp(0, edge - 1);
-            x = edge - 1 - x;
-        }
+        let [x, y] = packing_octahedral_texel(size, column, row);
         let first = 4 * (whole * whole - size * size) / 3;
-        let (x, y) = (x.clamp(0, edge - 1) as u32, y.clamp(0, edge - 1) as u32);
         Vec4::from(self.capture[(first + y * size + x) as usize])
     }
 

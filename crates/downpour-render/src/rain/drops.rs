@@ -13,9 +13,10 @@ use rayon::prelude::*;
 
 use super::drops_atlas::{DropsAtlas, DropsAtlasStreak, drops_atlas_streak};
 use super::drops_frame::DropsView;
-use super::drops_mask::{drops_mask_right, drops_mask_unit};
+use super::drops_mask::drops_mask_unit;
 use super::drops_shade::DropsShade;
 use super::environment::EnvironmentMap;
+use super::glint::drop_glint_right;
 use super::glint::drop_glint_rousseau;
 use super::streak::{
     DropsDrop, StreakChord, streak_chord, streak_cover, streak_depth, streak_mask_position, streak_nearest,
@@ -55,7 +56,7 @@ pub fn drops_is_splash(drop: &DropsDrop) -> bool {
 /// Position on the plane at distance 1 through a drop's center, along the right and up of its view, of a place on the picture.
 pub(super) fn drops_position(camera: &Camera, drop: &DropsDrop, x: f32, y: f32) -> Vec2 {
     let towards = Vec3::from(drop.towards);
-    let right = drops_mask_right(towards);
+    let right = drop_glint_right(towards);
     let lean = drops_on_plane(towards, camera.camera_ray(x, y));
     Vec2::new(lean.dot(right), lean.dot(right.cross(towards)))
 }
@@ -109,7 +110,7 @@ impl Buffers<'_> {
             return light;
         }
         let towards = Vec3::from(drop.towards);
-        let right = drops_mask_right(towards);
+        let right = drop_glint_right(towards);
         let up = right.cross(towards);
         let turned = drops_mask_unit(self.view.drops_mask_at(drop.mask_index, x, y).reflected + Vec3::Z);
         let normal = right * turned.x + up * turned.y - towards * turned.z;
@@ -183,7 +184,7 @@ impl Buffers<'_> {
             return Vec4::ZERO;
         }
         let towards = Vec3::from(drop.towards);
-        let right = drops_mask_right(towards);
+        let right = drop_glint_right(towards);
         let up = right.cross(towards);
         let n = if small { DROPS_SMALL_GRID } else { drop.grid };
         let extent = drop.half_extent * drop.slope;
@@ -273,7 +274,7 @@ impl Buffers<'_> {
             return (self.table.streak_lookup_mean(drop.shape, position) + light).extend(1.0) * cover;
         }
         let towards = Vec3::from(drop.towards);
-        let right = drops_mask_right(towards);
+        let right = drop_glint_right(towards);
         let up = right.cross(towards);
         let shift = Vec2::new(drops_shift(y), drops_shift(x));
         let mut sum = Vec4::ZERO;

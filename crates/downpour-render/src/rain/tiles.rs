@@ -3,6 +3,7 @@
 
 use std::cmp::Ordering;
 
+use downpour_math::bins::Bins;
 use downpour_shaders::render::rain::{DROPS_TILE, TILES_EDGES};
 use glam::Vec2;
 use rayon::prelude::*;
@@ -144,30 +145,16 @@ impl TileLists {
         }
         let edge = tiles_edge(&totals, room);
         let [across, down] = size.map(|pixels| pixels.div_ceil(edge));
-        let mut starts = vec![0u32; (across * down) as usize + 1];
-        let touched = |drop: &DropsDrop, each: &mut dyn FnMut(usize)| {
+        let touched = |index: u32, each: &mut dyn FnMut(usize)| {
+            let drop = &drops[index as usize];
             let Some([top, bottom]) = tiles_rows(drop, edge, size) else { return };
             for row in top..=bottom {
                 let Some([left, right]) = tiles_columns(drop, row, edge, size[0]) else { continue };
                 (left..=right).for_each(|column| each((row * across + column) as usize));
             }
         };
-        for drop in drops {
-            touched(drop, &mut |tile| starts[tile + 1] += 1);
-        }
-        let mut sum = 0;
-        for start in &mut starts {
-            sum += *start;
-            *start = sum;
-        }
-        let mut next = starts.clone();
-        let mut lists = vec![0; sum as usize];
-        for (index, drop) in (0u32..).zip(drops) {
-            touched(drop, &mut |tile| {
-                lists[next[tile] as usize] = index;
-                next[tile] += 1;
-            });
-        }
+        let Bins { starts, items: mut lists } =
+            Bins::new((across * down) as usize, drops.len() as u32, touched);
         let mut rest = lists.as_mut_slice();
         let mut all = Vec::with_capacity(starts.len());
         for pair in starts.windows(2) {
