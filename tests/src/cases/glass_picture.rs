@@ -21,7 +21,7 @@ use downpour_shaders::render::glass::{BLADE, GLASS_PICTURE, GLASS_PICTURE_KERNEL
 use downpour_shaders::render::rain::COMPOSE_KERNEL;
 use downpour_trace::data::RenderFrame;
 use downpour_trace::scene::SceneView;
-use downpour_trace::stage::Stage;
+use downpour_trace::stage::FrameScene;
 use downpour_weather::{Loaded, Weather};
 use glam::{Vec2, Vec3};
 
@@ -240,7 +240,7 @@ fn pane(keys: &str) -> GlassPicture {
         drop_model: None,
         warnings: Vec::new(),
     };
-    let stage = Stage::new(&weather, &loaded, 0.0).expect("a stage");
+    let stage = FrameScene::new(&weather, &loaded, 0.0).expect("a stage");
     let mut pane = WetPane::new(&weather, &stage.viewpoint, 0.0).expect("a lattice").expect("a pane");
     pane.advance(0.0).expect("time");
     let frame = RenderFrame::new(&stage.data, &stage.viewpoint, SIZE, 1, 0, 0).expect("a frame");

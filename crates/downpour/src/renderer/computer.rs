@@ -9,7 +9,7 @@ use downpour_render::picture::{Picture, PictureOptions, timed};
 use downpour_render::rain::DropMasks;
 use downpour_trace::kept::KeptPlate;
 use downpour_trace::picture::{TracedPlate, render_picture_on};
-use downpour_trace::stage::Stage;
+use downpour_trace::stage::FrameScene;
 use downpour_weather::Weather;
 
 use super::RendererError;
@@ -264,7 +264,7 @@ impl Drawer {
     pub(super) fn display(
         &self,
         of: downpour_trace::gpu::PictureUse,
-        stage: &Stage,
+        stage: &FrameScene,
         drops: &Drops,
         masks: &DropMasks,
         options: &PictureOptions,
@@ -276,7 +276,7 @@ impl Drawer {
     pub(super) fn paint(
         &self,
         kept_frames: u32,
-        stage: &Stage,
+        stage: &FrameScene,
         drops: &Drops,
         masks: &DropMasks,
         options: &PictureOptions,

@@ -8,7 +8,7 @@ use downpour_render::RenderError;
 use downpour_render::glass::PaneError;
 use downpour_scene::SceneError;
 use downpour_trace::puddle::PuddleError;
-use downpour_trace::stage::StageError;
+use downpour_trace::stage::FrameSceneError;
 
 /// Reason why there is no frame. Messages are one line: the file or the quantity, what was found, what is allowed.
 #[derive(Debug, thiserror::Error)]
@@ -19,7 +19,7 @@ pub enum RendererError {
     Scene(#[from] SceneError),
     /// The scene of a frame cannot be built.
     #[error(transparent)]
-    Stage(#[from] StageError),
+    FrameScene(#[from] FrameSceneError),
     /// The rain's settings are out of range.
     #[error(transparent)]
     Shower(#[from] ShowerError),

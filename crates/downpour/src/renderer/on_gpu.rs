@@ -13,7 +13,7 @@ use downpour_sim::gpu::{FieldOnGpu, FieldSearch};
 use downpour_trace::gpu::{
     DisplayReadback, FieldDrops, PictureDrops, PictureOnGpu, PictureRenderer, PictureUse,
 };
-use downpour_trace::stage::Stage;
+use downpour_trace::stage::FrameScene;
 
 use super::RendererError;
 use super::computer::{Painted, Through, ThroughGlass};
@@ -48,7 +48,7 @@ impl OnGpu {
     pub(super) fn display(
         &self,
         of: PictureUse,
-        stage: &Stage,
+        stage: &FrameScene,
         drops: &Drops,
         masks: &DropMasks,
         options: &PictureOptions,
@@ -59,7 +59,7 @@ impl OnGpu {
     fn drawn(
         &self,
         of: PictureUse,
-        stage: &Stage,
+        stage: &FrameScene,
         drops: &Drops,
         masks: &DropMasks,
         options: &PictureOptions,
@@ -78,7 +78,7 @@ impl OnGpu {
     pub(super) fn paint(
         &self,
         kept_frames: u32,
-        stage: &Stage,
+        stage: &FrameScene,
         drops: &Drops,
         masks: &DropMasks,
         options: &PictureOptions,
@@ -106,7 +106,7 @@ impl OnGpu {
     fn draw(
         &self,
         of: PictureUse,
-        stage: &Stage,
+        stage: &FrameScene,
         shown: &ShowerView,
         masks: &DropMasks,
         options: &PictureOptions,

@@ -21,7 +21,7 @@ use glam::{DVec3, Vec3};
 
 use super::scenery::Scenery;
 use super::{ShowerError, bounce};
-use downpour_trace::stage::Stage;
+use downpour_trace::stage::FrameScene;
 
 /// Steps of a second.
 const STEPS_PER_S: f64 = 60.0;
@@ -147,7 +147,7 @@ impl Stepped {
     pub(super) fn at(
         &mut self,
         scenery: &dyn Scenery,
-        stage: &Stage,
+        stage: &FrameScene,
         time_s: f64,
         passed: &mut dyn FnMut(u32, u32),
     ) -> Result<VisibleDrops, ShowerError> {
@@ -321,7 +321,7 @@ impl Stepped {
     #[expect(clippy::type_complexity, reason = "a map and its making")]
     fn map(
         &self,
-        stage: &Stage,
+        stage: &FrameScene,
         still: bool,
         views: &[View],
         wind: Vec3,
@@ -341,7 +341,7 @@ impl Stepped {
     /// The wind at a time in the cells round the eye; what is `known` where it is the same.
     fn blown(
         &self,
-        stage: &Stage,
+        stage: &FrameScene,
         view: &View,
         time_s: f64,
         map: Option<&CollisionMap>,
@@ -367,7 +367,7 @@ impl Stepped {
     /// Part of the scene that the map has to cover; `None` without obstacles.
     fn region(
         &self,
-        stage: &Stage,
+        stage: &FrameScene,
         views: &[View],
         wind: Vec3,
     ) -> Result<Option<CollisionOptions>, ShowerError> {
@@ -392,7 +392,7 @@ impl Stepped {
     }
 
     /// A box, relative to the stage's origin, that holds the drops of a view.
-    fn reached(&self, stage: &Stage, view: &View) -> (DVec3, DVec3) {
+    fn reached(&self, stage: &FrameScene, view: &View) -> (DVec3, DVec3) {
         let eye = view.eye - stage.origin;
         match self.options.volume {
             SimVolume::Box { size_m } | SimVolume::Tariq { size_m } => {
