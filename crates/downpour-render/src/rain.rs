@@ -93,7 +93,7 @@ pub use list::Rain;
 pub use masks::DropMasks;
 pub use medium::{MediumOptions, PanePlane, RainMedium};
 pub use profiles::StreakProfiles;
-pub use streak::DropsDrop;
+pub use streak::ScreenDrop;
 pub use streak_lookup::StreakTable;
 pub use streak_path::StreakPath;
 pub use streak_rays::StreakRay;

@@ -36,7 +36,7 @@ use downpour_render::rain::glint::drop_glint_right;
 use downpour_render::rain::light::DropLights;
 use downpour_render::rain::masks::{DIAMETER_STEP, DIAMETERS};
 use downpour_render::rain::{
-    DropMasks, DropsDrop, EnvironmentMap, Exposure, Rain, RainOptions, StreakSamples,
+    DropMasks, EnvironmentMap, Exposure, Rain, RainOptions, ScreenDrop, StreakSamples,
 };
 use downpour_trace::builder::SceneBuilder;
 use downpour_trace::capture::trace_environment;
@@ -298,7 +298,7 @@ fn background(view: &View, sky: Sky<'_>) -> Vec<[f32; 4]> {
 }
 
 /// Sets the phases of the specimen, and the lobe of the mode (3,1) toward +X.
-fn set_phases(drop: &mut DropsDrop, options: &SpecimenOptions) {
+fn set_phases(drop: &mut ScreenDrop, options: &SpecimenOptions) {
     if options.oscillation == Amplitudes::NONE {
         return;
     }

@@ -17,8 +17,8 @@ use downpour_render::rain::streak_cell::{
 };
 use downpour_render::rain::streak_span::{StreakSpan, streak_span, streak_span_time};
 use downpour_render::rain::{
-    DropMasks, DropsDrop, EnvironmentMap, Exposure, EyeMotion, MediumOptions, PanePlane, Rain, RainMedium,
-    RainOptions, RefractionForm, StreakColor, StreakProfiles, StreakSamples, TemporalResponse,
+    DropMasks, EnvironmentMap, Exposure, EyeMotion, MediumOptions, PanePlane, Rain, RainMedium, RainOptions,
+    RefractionForm, ScreenDrop, StreakColor, StreakProfiles, StreakSamples, TemporalResponse,
 };
 use downpour_shaders::render::medium::{
     MEDIUM, MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL,
@@ -397,7 +397,7 @@ fn weights(random: [u32; 4]) -> Vec<u32> {
 }
 
 /// Words of a drop.
-const DROP: usize = size_of::<DropsDrop>() / 4;
+const DROP: usize = size_of::<ScreenDrop>() / 4;
 
 /// A drop that moves by some of its radii, nearer, away or neither.
 fn moving(random: [u32; 4]) -> Vec<u32> {
@@ -405,12 +405,12 @@ fn moving(random: [u32; 4]) -> Vec<u32> {
     let slope = 0.03 * unit(random[0]) + 1.0e-4;
     let moves = slope * (0.1 + 20.0 * unit(random[1]) * unit(random[1]));
     let turn = 6.0 * unit(random[2]);
-    let drop = DropsDrop {
+    let drop = ScreenDrop {
         slope,
         half_extent: 1.0 + 0.3 * unit(random[2] ^ random[0]),
         along: [moves * ops::cos(turn), moves * ops::sin(turn)],
         depth_ratio: 0.5 + 1.5 * unit(random[3]),
-        ..DropsDrop::default()
+        ..ScreenDrop::default()
     };
     bytemuck::cast_slice(bytemuck::bytes_of(&drop)).to_vec()
 }

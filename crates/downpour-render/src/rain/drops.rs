@@ -19,7 +19,7 @@ use super::environment::EnvironmentMap;
 use super::glint::drop_glint_right;
 use super::glint::drop_glint_rousseau;
 use super::streak::{
-    DropsDrop, StreakChord, streak_chord, streak_cover, streak_depth, streak_mask_position, streak_nearest,
+    ScreenDrop, StreakChord, streak_chord, streak_cover, streak_depth, streak_mask_position, streak_nearest,
     streak_time, streak_weight,
 };
 use super::streak_lookup::StreakTable;
@@ -43,18 +43,18 @@ pub fn drops_shift(line: u32) -> f32 {
 
 /// The phase of the mode (2,0), in turns, where a passing drop is at a fraction of its way.
 #[must_use]
-pub fn drops_turns(drop: &DropsDrop, way: f32) -> f32 {
+pub fn drops_turns(drop: &ScreenDrop, way: f32) -> f32 {
     drop.mode_phase[2] + drop.cycles[0] * streak_time(drop.depth_ratio, way)
 }
 
 /// True for a splash, whose masks are behind those of the diameters.
 #[must_use]
-pub fn drops_is_splash(drop: &DropsDrop) -> bool {
+pub fn drops_is_splash(drop: &ScreenDrop) -> bool {
     drop.mask_index[0] >= PROJECT_DIAMETERS as f32
 }
 
 /// Position on the plane at distance 1 through a drop's center, along the right and up of its view, of a place on the picture.
-pub(super) fn drops_position(camera: &Camera, drop: &DropsDrop, x: f32, y: f32) -> Vec2 {
+pub(super) fn drops_position(camera: &Camera, drop: &ScreenDrop, x: f32, y: f32) -> Vec2 {
     let towards = Vec3::from(drop.towards);
     let right = drop_glint_right(towards);
     let lean = drops_on_plane(towards, camera.camera_ray(x, y));
@@ -62,14 +62,14 @@ pub(super) fn drops_position(camera: &Camera, drop: &DropsDrop, x: f32, y: f32) 
 }
 
 /// The depth of a drop before a pixel, m.
-pub(super) fn drops_depth(camera: &Camera, drop: &DropsDrop, x: u32, y: u32) -> f32 {
+pub(super) fn drops_depth(camera: &Camera, drop: &ScreenDrop, x: u32, y: u32) -> f32 {
     let way = streak_nearest(drop, drops_position(camera, drop, x as f32 + 0.5, y as f32 + 0.5));
     drop.distance * streak_depth(drop.depth_ratio, streak_time(drop.depth_ratio, way))
 }
 
 /// The part of a drop at a depth that is before a scene, 0 to 1: one that meets a surface goes into it over its own size; a splash
 /// stands on one, which hides it only from behind.
-pub(super) fn drops_before(drop: &DropsDrop, scene: f32, depth: f32) -> f32 {
+pub(super) fn drops_before(drop: &ScreenDrop, scene: f32, depth: f32) -> f32 {
     let sunk = (scene - depth) / (2.0 * drop.slope * drop.distance);
     (sunk + if drops_is_splash(drop) { 1.5 } else { 0.5 }).clamp(0.0, 1.0)
 }
@@ -102,7 +102,7 @@ impl Buffers<'_> {
 
     /// Light of lamps in the form of Rousseau 2006 at a position of a drop's mask, by the normal there, which halves the angle
     /// between the eye and what is mirrored: what it is more than the mean over the drop.
-    fn drops_facing(&self, index: u32, drop: &DropsDrop, x: f32, y: f32) -> Vec3 {
+    fn drops_facing(&self, index: u32, drop: &ScreenDrop, x: f32, y: f32) -> Vec3 {
         let row = self.drops_glint_row(index);
         let mut light = Vec3::ZERO;
         // An atlas has streaks, other forms have glints.
@@ -141,7 +141,7 @@ impl Buffers<'_> {
     }
 
     /// Light of lamps on a passing drop by the streaks of an atlas, for as long as it passes a position on the plane.
-    fn drops_streaks(&self, index: u32, drop: &DropsDrop, chord: &StreakChord, at: Vec2) -> Vec3 {
+    fn drops_streaks(&self, index: u32, drop: &ScreenDrop, chord: &StreakChord, at: Vec2) -> Vec3 {
         let row = self.drops_glint_row(index);
         let part = (chord.high - chord.low) * 0.5;
         let turns = drops_turns(drop, streak_nearest(drop, at));
@@ -155,12 +155,12 @@ impl Buffers<'_> {
 
     /// Light of lamps on a drop that is not sampled, as a radiance over all of it: with an atlas bright and dark along its
     /// path.
-    fn drops_beads(&self, index: u32, drop: &DropsDrop, x: u32, y: u32) -> Vec3 {
+    fn drops_beads(&self, index: u32, drop: &ScreenDrop, x: u32, y: u32) -> Vec3 {
         let mut light = Vec4::from(self.drops_glint_row(index)[0]).truncate();
         if self.view.frame.atlas == 0 || drop.spread > 1.0 {
             return light;
         }
-        let way = Vec2::from(drop.way);
+        let way = Vec2::from(drop.screen_delta);
         let square = way.dot(way).max(1.0);
         let at = (Vec2::new(x as f32, y as f32) + 0.5 - Vec2::from(drop.first)).dot(way) / square;
         let pixel = 1.0 / square.sqrt();
@@ -177,7 +177,7 @@ impl Buffers<'_> {
     }
 
     /// A still drop over a pixel: radiance times coverage, and coverage. Below a pixel it is its mean radiance.
-    fn drops_still(&self, index: u32, drop: &DropsDrop, x: u32, y: u32) -> Vec4 {
+    fn drops_still(&self, index: u32, drop: &ScreenDrop, x: u32, y: u32) -> Vec4 {
         let small = drop.grid == 0;
         let spread = streak_cover(drop, x, y);
         if small && spread <= 0.0 {
@@ -239,7 +239,7 @@ impl Buffers<'_> {
     }
 
     /// The part of a chord that passes during the exposure, by the weighted mean over its middle points.
-    fn drops_chord(&self, index: u32, drop: &DropsDrop, chord: &StreakChord, ray: Vec3) -> Vec4 {
+    fn drops_chord(&self, index: u32, drop: &ScreenDrop, chord: &StreakChord, ray: Vec3) -> Vec4 {
         let frame = self.view.frame;
         let shade = DropsShade {
             towards: drops_mask_unit(ray),
@@ -262,7 +262,7 @@ impl Buffers<'_> {
     }
 
     /// The streak of a drop over a pixel: radiance times coverage, and coverage.
-    fn drops_streak(&self, index: u32, drop: &DropsDrop, x: u32, y: u32) -> Vec4 {
+    fn drops_streak(&self, index: u32, drop: &ScreenDrop, x: u32, y: u32) -> Vec4 {
         let size = Vec2::new(self.view.frame.camera.width as f32, self.view.frame.camera.height as f32);
         if drop.grid == 0 {
             let cover = streak_cover(drop, x, y);
