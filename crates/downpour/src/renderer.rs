@@ -36,7 +36,7 @@ use downpour_trace::wet_ground::WetGround;
 use downpour_weather::{CameraPath, Loaded, StreakLook, Weather};
 
 pub use computer::{Backend, Computer, Device};
-use computer::{Drawer, Painted, Through};
+use computer::{Drawer, Painted, PaneView};
 pub use display::{DisplayFrame, PendingDisplay};
 use drops::Drops;
 pub use error::RendererError;
@@ -517,7 +517,7 @@ fn rain_on(pane: &mut WetPane, time_s: f64, told: &mut dyn FnMut(Progress)) -> R
 }
 
 /// The pane that a picture is seen through.
-fn through(pane: &WetPane, stage: &FrameScene, options: &PictureOptions) -> Result<Through, RendererError> {
+fn through(pane: &WetPane, stage: &FrameScene, options: &PictureOptions) -> Result<PaneView, RendererError> {
     let PictureOptions { size, grid, sky_rays, seed, .. } = *options;
     let frame = RenderFrame::new(&stage.data, &stage.viewpoint, size, grid, sky_rays, seed)?;
     let camera = frame.camera;
@@ -539,5 +539,5 @@ fn through(pane: &WetPane, stage: &FrameScene, options: &PictureOptions) -> Resu
         texels,
         options.rain.exposure.shutter_s,
     )?;
-    Ok(Through { glass, environment, glow: options.glow, camera })
+    Ok(PaneView { glass, environment, glow: options.glow, camera })
 }

@@ -6,7 +6,7 @@ use downpour_shaders::render::glass::{GLASS_PICTURE_BLADES, GLASS_PICTURE_LEVELS
 
 use super::blade::GlassPictureBlade;
 use super::light::GlassPictureLight;
-use super::picture::Look;
+use super::picture::PaneTracer;
 use super::water::GlassPictureDrop;
 use crate::camera::Camera;
 
@@ -106,7 +106,7 @@ impl GlassPicture {
     /// has them.
     #[must_use]
     pub fn through(&self, behind: &[[f32; 4]], capture: &[[f32; 4]]) -> Vec<[f32; 3]> {
-        Look { glass: self, behind: &self.with_levels(behind), capture }.picture()
+        PaneTracer { glass: self, behind: &self.with_levels(behind), capture }.picture()
     }
 
     /// A picture with its coarser levels.

@@ -6,9 +6,9 @@ use downpour_math::packing::{packing_octahedral_encode, packing_octahedral_texel
 use downpour_shaders::render::glass::GLASS_PICTURE_FAR;
 use glam::{IVec2, UVec2, Vec2, Vec3, Vec4};
 
-use super::picture::Look;
+use super::picture::PaneTracer;
 
-impl Look<'_> {
+impl PaneTracer<'_> {
     /// A texel of a level of the picture; the nearest where there is none.
     pub(super) fn glass_picture_texel(&self, level: u32, column: i32, row: i32) -> Vec4 {
         let [width, height, first, _] = self.glass.frame.levels[level as usize];
@@ -18,7 +18,7 @@ impl Look<'_> {
     }
 
     /// A texel of a level of the capture. Beyond an edge, the octahedral map continues mirrored about the edge's middle.
-    fn glass_picture_round_texel(&self, level: u32, column: i32, row: i32) -> Vec4 {
+    fn glass_picture_environment_texel(&self, level: u32, column: i32, row: i32) -> Vec4 {
         let whole = self.glass.frame.capture_size;
         let size = whole >> level;
         let [x, y] = packing_octahedral_texel(size, column, row);
@@ -46,7 +46,7 @@ impl Look<'_> {
             let cell = low.as_ivec2() + step;
             if fraction > 0.0 {
                 let texel = if of_capture {
-                    self.glass_picture_round_texel(level, cell.x, cell.y)
+                    self.glass_picture_environment_texel(level, cell.x, cell.y)
                 } else {
                     self.glass_picture_texel(level, cell.x, cell.y)
                 };
@@ -71,7 +71,7 @@ impl Look<'_> {
     }
 
     /// Radiance of the environment map in a direction, averaged over a footprint in radians.
-    pub(super) fn glass_picture_round(&self, direction: Vec3, footprint: f32) -> Vec3 {
+    pub(super) fn glass_picture_environment(&self, direction: Vec3, footprint: f32) -> Vec3 {
         let position = Vec2::from(packing_octahedral_encode(direction.to_array())) * 0.5 + 0.5;
         self.glass_picture_at(true, position, footprint / self.glass.frame.capture_texel)
     }
@@ -107,7 +107,7 @@ impl Look<'_> {
         } else {
             let square = Vec2::from(packing_octahedral_encode(direction.to_array()));
             let texel = (square * 0.5 + 0.5) * frame.capture_size as f32;
-            self.glass_picture_round_texel(0, texel.x as i32, texel.y as i32).w
+            self.glass_picture_environment_texel(0, texel.x as i32, texel.y as i32).w
         };
         let to = direction + from_eye / distance.clamp(0.1, GLASS_PICTURE_FAR);
         let position = self.glass_picture_project(to);
@@ -121,7 +121,7 @@ impl Look<'_> {
             sum = self.glass_picture_at(false, at, texels) * fraction;
         }
         if fraction < 1.0 {
-            sum += self.glass_picture_round(to, footprint) * (1.0 - fraction);
+            sum += self.glass_picture_environment(to, footprint) * (1.0 - fraction);
         }
         sum
     }

@@ -161,7 +161,7 @@ pub(super) struct ThroughGlass {
 }
 
 /// Pane that a frame is seen through.
-pub(super) struct Through {
+pub(super) struct PaneView {
     pub(super) glass: GlassPicture,
     /// The environment map that the pane shows; `None` takes the one of the drops.
     pub(super) environment: Option<Vec<[f32; 4]>>,
@@ -280,7 +280,7 @@ impl Drawer {
         drops: &Drops,
         masks: &DropMasks,
         options: &PictureOptions,
-        through: Option<&Through>,
+        through: Option<&PaneView>,
     ) -> Result<Painted, RendererError> {
         #[cfg(feature = "wgpu")]
         if let Some(on_gpu) = &self.on_gpu {
@@ -299,7 +299,7 @@ impl Drawer {
             *kept = own;
         }
         drop(kept);
-        if let Some(Through { glass, environment, glow, camera }) = through {
+        if let Some(PaneView { glass, environment, glow, camera }) = through {
             let environment = environment.as_ref().unwrap_or(&picture.surroundings);
             let behind = picture.behind_glass();
             let seen = timed(&mut picture.passes, "glass", || glass.through(&behind, environment));

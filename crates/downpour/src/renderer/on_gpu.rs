@@ -16,7 +16,7 @@ use downpour_trace::gpu::{
 use downpour_trace::stage::FrameScene;
 
 use super::RendererError;
-use super::computer::{Painted, Through, ThroughGlass};
+use super::computer::{Painted, PaneView, ThroughGlass};
 use super::drops::Drops;
 use crate::shower::ShowerView;
 
@@ -82,11 +82,11 @@ impl OnGpu {
         drops: &Drops,
         masks: &DropMasks,
         options: &PictureOptions,
-        through: Option<&Through>,
+        through: Option<&PaneView>,
     ) -> Result<Painted, RendererError> {
         let of = PictureUse { kept_frames, tone: None };
         let mut drawn = self.drawn(of, stage, drops, masks, options)?;
-        let Some(Through { glass, environment, glow, camera }) = through else {
+        let Some(PaneView { glass, environment, glow, camera }) = through else {
             return Ok(Painted::OnItsWay { read: Box::new(drawn.begin_read()?), through_glass: None });
         };
         let begin = Instant::now();
