@@ -3,7 +3,7 @@
 // and shows what stands in its new direction: the picture where that is in it, else the capture of what is around the eye.
 // The position of a point is given by the distance in its own direction. Light that is not transmitted (Fresnel, exact,
 // incoherent sum over the reflections within the pane) shows the eye's side, whose light is a fraction of that of the
-// surroundings; so does what is totally reflected back to the eye. A lens of some size is a set of points: what is out
+// environment; so does what is totally reflected back to the eye. A lens of some size is a set of points: what is out
 // of focus is blurred by as much as the lens says, and no light is lost.
 // Limits: the pane's thickness does not shift what is behind it; light that is totally reflected within a drop and leaves
 // it elsewhere continues without a second refraction.

@@ -51,7 +51,7 @@ pub struct GlassPictureFrame {
     pub focus: u32,
     /// The reflectance of water.
     pub fresnel: u32,
-    /// Light of the eye's side, of that of the surroundings.
+    /// Light of the eye's side, relative to that of the environment.
     pub room: f32,
     /// Samples of a pixel.
     pub samples: u32,

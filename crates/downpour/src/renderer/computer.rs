@@ -300,7 +300,7 @@ impl Drawer {
         }
         drop(kept);
         if let Some(PaneView { glass, environment, glow, camera }) = through {
-            let environment = environment.as_ref().unwrap_or(&picture.surroundings);
+            let environment = environment.as_ref().unwrap_or(&picture.environment);
             let behind = picture.behind_glass();
             let seen = timed(&mut picture.passes, "glass", || glass.through(&behind, environment));
             picture.through_glass = Some(seen);

@@ -70,14 +70,14 @@ struct Running {
     simulation: Simulation,
     /// Steps from time 0 to the state.
     step: i64,
-    surroundings: Surroundings,
+    step_scenery: StepScenery,
     /// True if the next step looks at wind and map, whatever its number: the weather has changed.
     is_stale: bool,
 }
 
 /// Obstacles and wind of the drops.
 #[derive(Clone, Debug)]
-struct Surroundings {
+struct StepScenery {
     /// Digest of the scene that the map was made of.
     made_of: Option<(u64, CollisionOptions)>,
     map: Option<CollisionMap>,
@@ -95,7 +95,7 @@ struct Blown {
     field: WindField,
 }
 
-impl Surroundings {
+impl StepScenery {
     fn field(&self) -> Option<&WindField> {
         self.wind.as_ref().map(|wind| &wind.field)
     }
@@ -177,30 +177,30 @@ impl Stepped {
             running.step += 1;
             let now_s = running.step as f64 / STEPS_PER_S;
             if running.step % STEPS_PER_WIND == 0 || std::mem::take(&mut running.is_stale) {
-                running.surroundings = self.surroundings(scenery, now_s, Some(running.surroundings))?;
+                running.step_scenery = self.step_scenery(scenery, now_s, Some(running.step_scenery))?;
             }
             let view = self.view(scenery, now_s)?;
             let air = self.weather.wind.air().prepared(now_s);
-            let surroundings = &running.surroundings;
+            let step_scenery = &running.step_scenery;
             let moment = StepInput {
-                field: surroundings.field(),
-                map: surroundings.map.as_ref(),
+                field: step_scenery.field(),
+                map: step_scenery.map.as_ref(),
                 air: Some(&air),
-                ..StepInput::new(&view, surroundings.origin, air.velocity().as_vec3())
+                ..StepInput::new(&view, step_scenery.origin, air.velocity().as_vec3())
             };
             running.simulation.advance(1.0 / STEPS_PER_S, &moment)?;
             passed(done, all);
         }
         let after_s = (time_s - running.step as f64 / STEPS_PER_S).max(0.0);
         let visible = if scenery.is_still() {
-            running.simulation.visible_after(after_s, &view, running.surroundings.map.as_ref())
+            running.simulation.visible_after(after_s, &view, running.step_scenery.map.as_ref())
         } else {
             // Where things are in this picture; the next step is not told of it.
             let wind = self.weather.wind.air().velocity(time_s).as_vec3();
             let made = self.map(stage, false, &[view], wind, None)?;
             let map = made.as_ref().and_then(|(_, map)| map.as_ref());
-            let map = map.filter(|_| stage.origin == running.surroundings.origin);
-            running.simulation.visible_after(after_s, &view, map.or(running.surroundings.map.as_ref()))
+            let map = map.filter(|_| stage.origin == running.step_scenery.origin);
+            running.simulation.visible_after(after_s, &view, map.or(running.step_scenery.map.as_ref()))
         };
         self.running = Some(running);
         Ok(visible)
@@ -213,12 +213,12 @@ impl Stepped {
         time_s: f64,
     ) -> Result<Option<WindField>, ShowerError> {
         self.begin(scenery)?;
-        Ok(self.surroundings(scenery, time_s, None)?.wind.map(|wind| wind.field))
+        Ok(self.step_scenery(scenery, time_s, None)?.wind.map(|wind| wind.field))
     }
 
     pub(super) fn measured_rate_mm_h(&self) -> f64 {
         let measured =
-            |running: &Running| running.simulation.measured_rate_mm_h(running.surroundings.map.as_ref());
+            |running: &Running| running.simulation.measured_rate_mm_h(running.step_scenery.map.as_ref());
         self.running.as_ref().map_or(0.0, measured)
     }
 
@@ -265,14 +265,14 @@ impl Stepped {
     /// A rain that begins at a step.
     fn started(&self, scenery: &dyn Scenery, step: i64) -> Result<Running, ShowerError> {
         let time_s = step as f64 / STEPS_PER_S;
-        let surroundings = self.surroundings(scenery, time_s, None)?;
+        let step_scenery = self.step_scenery(scenery, time_s, None)?;
         let view = self.view(scenery, time_s)?;
         let air = self.weather.wind.air().prepared(time_s);
         let moment = StepInput {
-            field: surroundings.field(),
-            map: surroundings.map.as_ref(),
+            field: step_scenery.field(),
+            map: step_scenery.map.as_ref(),
             air: Some(&air),
-            ..StepInput::new(&view, surroundings.origin, air.velocity().as_vec3())
+            ..StepInput::new(&view, step_scenery.origin, air.velocity().as_vec3())
         };
         let options = SimulationOptions {
             first_step: (STEP_ZERO + step).clamp(1, i64::from(u32::MAX)) as u32,
@@ -281,16 +281,16 @@ impl Stepped {
             ..self.options.clone()
         };
         let simulation = Simulation::new(&self.law, &options, &moment)?;
-        Ok(Running { simulation, step, surroundings, is_stale: false })
+        Ok(Running { simulation, step, step_scenery, is_stale: false })
     }
 
     /// Wind and map for the steps from a time on until they are made anew.
-    fn surroundings(
+    fn step_scenery(
         &self,
         scenery: &dyn Scenery,
         time_s: f64,
-        before: Option<Surroundings>,
-    ) -> Result<Surroundings, ShowerError> {
+        before: Option<StepScenery>,
+    ) -> Result<StepScenery, ShowerError> {
         let stage = scenery.stage(time_s)?;
         let wind = self.weather.wind.air().velocity(time_s).as_vec3();
         let uniform = self.weather.wind.uniform().is_some();
@@ -302,7 +302,7 @@ impl Stepped {
             vec![at(0.0)?, at(0.5)?, at(1.0)?]
         };
         let before =
-            before.unwrap_or(Surroundings { made_of: None, map: None, wind: None, origin: stage.origin });
+            before.unwrap_or(StepScenery { made_of: None, map: None, wind: None, origin: stage.origin });
         let made = self.map(&stage, scenery.is_still(), &views, wind, before.made_of)?;
         // A field knows the map that it was made with.
         let same_map = matches!(made, Some((_, None))) || (made.is_none() && before.made_of.is_none());
@@ -313,7 +313,7 @@ impl Stepped {
         };
         let wind =
             if uniform { None } else { Some(self.blown(&stage, &views[0], time_s, map.as_ref(), known)?) };
-        Ok(Surroundings { made_of, map, wind, origin: stage.origin })
+        Ok(StepScenery { made_of, map, wind, origin: stage.origin })
     }
 
     /// The map of what stops drops in some views, and what it is made of (of a scene that stands still the options alone say
