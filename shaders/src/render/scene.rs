@@ -70,7 +70,7 @@ shared_constants! {
         /// Light kind: from a place of a surface that shines; never in the table.
         SCENE_LIGHT_AREA: u32 = 3;
         /// Largest half angle of a lamp's disk, radians: from within its sphere.
-        LIGHT_LARGEST_SPREAD: f32 = 1.5;
+        LIGHT_MAX_SPREAD: f32 = 1.5;
         /// Rays toward a lamp with a size that gives much.
         SCENE_LAMP_RAYS: u32 = 2;
         /// Fraction of a disk's area for each step of a reversed number: 2^-32.

@@ -96,7 +96,7 @@ fn drops_is_splash(drop: ScreenDrop) -> bool {
 
 // The light of lamps on a part of a splash, over that of a sphere: what is bent as little as by a sheet of water stays where it is.
 fn drops_bent(direction: vec3f) -> f32 {
-    return min(dot(direction.xy, direction.xy) * DROPS_BENT, DROPS_BENT_MOST);
+    return min(dot(direction.xy, direction.xy) * DROPS_BENT, DROPS_MAX_BENT);
 }
 
 // A still drop over a pixel: radiance times coverage, and coverage. Below a pixel it is its mean radiance.

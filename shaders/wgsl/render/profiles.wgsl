@@ -79,9 +79,9 @@ fn profiles_sized(drop: ScreenDrop) -> vec4u {
     let turned = atan2(along, 1.0) / PROFILES_TURNED;
     let oscillates = profiles_oscillates(drop);
     let turns = select(0.0, drop.cycles.y * (span.last - span.first), oscillates);
-    let least = select(1.0, PROFILES_LEAST[kind], oscillates);
+    let least = select(1.0, PROFILES_MIN[kind], oscillates);
     let wanted = ceil(max(turns * PROFILES_PER_TURN[kind], turned));
-    let rows = 1u + u32(clamp(wanted, least, PROFILES_MOST[kind]));
+    let rows = 1u + u32(clamp(wanted, least, PROFILES_MAX[kind]));
     return vec4u(rows, u32(PROFILES_COLUMNS[kind]), profiles_rows_of(rows), u32(PROFILES_FINE[kind]));
 }
 

@@ -11,7 +11,7 @@ use super::water::GlassPictureDrop;
 use crate::camera::Camera;
 
 /// Samples of a pixel, at most.
-const MOST_SAMPLES: u32 = 1024;
+const MAX_SAMPLES: u32 = 1024;
 
 /// Angle between neighbours of a spiral of even density, radians: the golden one.
 const GOLDEN: f32 = 2.399_963_2;
@@ -140,7 +140,7 @@ pub(super) fn levels([width, height]: [u32; 2]) -> ([[u32; 4]; GLASS_PICTURE_LEV
 /// Places of the lens and of the pixel. A lens of no size has a quarter of the samples.
 pub(super) fn samples(grid: u32, lens: f32) -> Vec<[f32; 4]> {
     let open = lens > 0.0;
-    let count = (grid * grid * if open { 16 } else { 4 }).clamp(1, MOST_SAMPLES);
+    let count = (grid * grid * if open { 16 } else { 4 }).clamp(1, MAX_SAMPLES);
     let share = |x: f32| x - x.floor();
     (0..count)
         .map(|k| {

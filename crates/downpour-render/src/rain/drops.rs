@@ -5,7 +5,7 @@ use downpour_math::ops;
 use downpour_shaders::render::drop_light::DROP_ATLAS_ROWS;
 use downpour_shaders::render::medium::{MEDIUM_SKY, MEDIUM_SKY_REACH};
 use downpour_shaders::render::rain::{
-    DROPS_ATLAS_TAPS, DROPS_BENT, DROPS_BENT_MOST, DROPS_LOOP, DROPS_OPAQUE, DROPS_SMALL_GRID, DROPS_STILL,
+    DROPS_ATLAS_TAPS, DROPS_BENT, DROPS_LOOP, DROPS_MAX_BENT, DROPS_OPAQUE, DROPS_SMALL_GRID, DROPS_STILL,
     DROPS_TABLE, PROJECT_DIAMETERS, STREAK_FINE, STREAK_GOLDEN, STREAK_LATTICE, STREAK_WHITE,
 };
 use glam::{Vec2, Vec3, Vec4};
@@ -78,7 +78,7 @@ pub(super) fn drops_before(drop: &ScreenDrop, scene: f32, depth: f32) -> f32 {
 #[must_use]
 pub fn drops_bent(direction: Vec3) -> f32 {
     let square = direction.x * direction.x + direction.y * direction.y;
-    (square * DROPS_BENT).min(DROPS_BENT_MOST)
+    (square * DROPS_BENT).min(DROPS_MAX_BENT)
 }
 
 /// Data that the kernel reads.

@@ -6,8 +6,8 @@ use downpour_math::ops;
 use downpour_math::rng::seed_words;
 use downpour_shaders::render::rain::{
     DROPS_LOOP, DROPS_STILL, DROPS_TABLE, PROFILES_ALONG, PROFILES_COLUMNS, PROFILES_FINE, PROFILES_KINDS,
-    PROFILES_LEAST, PROFILES_LEVELS, PROFILES_MOST, PROFILES_PER_TURN, PROFILES_ROWS_FOR_TWO,
-    PROFILES_TURNED, PROFILES_WIDTHS, PROJECT_CLASSES, STREAK_SUMS, STREAK_TURN,
+    PROFILES_LEVELS, PROFILES_MAX, PROFILES_MIN, PROFILES_PER_TURN, PROFILES_ROWS_FOR_TWO, PROFILES_TURNED,
+    PROFILES_WIDTHS, PROJECT_CLASSES, STREAK_SUMS, STREAK_TURN,
 };
 
 use super::exposure::Exposure;
@@ -146,9 +146,9 @@ pub fn profiles_sized(drop: &ScreenDrop) -> Sizes {
     let along = (x * x + y * y).sqrt() * (1.0 + span.before + span.after);
     let turned = ops::atan2(along, 1.0) / PROFILES_TURNED;
     let turns = drop.cycles[1] * (span.last - span.first);
-    let (turns, least) = if profiles_oscillates(drop) { (turns, PROFILES_LEAST[kind]) } else { (0.0, 1.0) };
+    let (turns, least) = if profiles_oscillates(drop) { (turns, PROFILES_MIN[kind]) } else { (0.0, 1.0) };
     let wanted = (turns * PROFILES_PER_TURN[kind]).max(turned).ceil();
-    let rows = 1 + wanted.clamp(least, PROFILES_MOST[kind]) as u32;
+    let rows = 1 + wanted.clamp(least, PROFILES_MAX[kind]) as u32;
     [rows, PROFILES_COLUMNS[kind] as u32, profiles_rows_of(rows), PROFILES_FINE[kind] as u32]
 }
 

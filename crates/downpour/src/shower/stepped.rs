@@ -45,7 +45,7 @@ const OLDEST_S: [f64; 2] = [2.0, 32.0];
 const TEXEL_M: f32 = 0.06;
 
 /// The most texels along an edge of it.
-const MOST_TEXELS: f32 = 512.0;
+const MAX_TEXELS: f32 = 512.0;
 
 /// Steps of the slope at which the map looks.
 const SLOPE_STEP: f32 = 0.125;
@@ -387,7 +387,7 @@ impl Stepped {
         // Half of the water falls faster, half slower.
         let speed = self.speeds.at(self.law.median_volume_diameter()).unwrap_or(6.0) as f32;
         let mut options = CollisionOptions::covering(low, high, slanted(wind, speed), [1, 1])?;
-        options.texels = options.size.map(|edge| (edge / TEXEL_M).clamp(16.0, MOST_TEXELS) as u32);
+        options.texels = options.size.map(|edge| (edge / TEXEL_M).clamp(16.0, MAX_TEXELS) as u32);
         Ok(Some(options))
     }
 
