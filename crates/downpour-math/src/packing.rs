@@ -3,6 +3,7 @@
 //! Source: Q. Meyer et al., "On Floating-Point Normal Vectors", EGSR 2010; Z. Cigolle et al., JCGT 3(2), 2014.
 
 use downpour_shaders::common::PACKING_MIN_NORM;
+use half::f16;
 
 /// Sign of `x` as 1 or -1; zero counts as positive.
 #[inline]
@@ -95,6 +96,19 @@ pub fn packing_pack_unorm(pair: [f32; 2]) -> u32 {
 #[must_use]
 pub fn packing_unpack_unorm(word: u32) -> [f32; 2] {
     [word as u16, (word >> 16) as u16].map(|half| f32::from(half) / 65535.0)
+}
+
+/// Unpacks both 16-bit floats of a word, as WGSL's `unpack2x16float`.
+#[must_use]
+pub fn packing_unpack_half(word: u32) -> [f32; 2] {
+    [f16::from_bits(word as u16).to_f32(), f16::from_bits((word >> 16) as u16).to_f32()]
+}
+
+/// Packs two numbers as 16-bit floats, rounded to the nearest, as WGSL's `pack2x16float`.
+#[must_use]
+pub fn packing_pack_half(pair: [f32; 2]) -> u32 {
+    let [low, high] = pair.map(|x| u32::from(f16::from_f32(x).to_bits()));
+    low | high << 16
 }
 
 #[cfg(test)]

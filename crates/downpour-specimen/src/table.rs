@@ -32,9 +32,9 @@ use super::{Image, SpecimenError, SpecimenLamp};
 use downpour_render::camera::Viewpoint;
 use downpour_render::light::LightSource;
 use downpour_render::picture::{PictureOptions, through_rain};
-use downpour_render::rain::glint::drop_glint_right;
+use downpour_render::rain::drop_glint_right;
 use downpour_render::rain::light::DropLights;
-use downpour_render::rain::masks::{DIAMETER_STEP, DIAMETERS};
+use downpour_render::rain::{DIAMETER_STEP, DIAMETERS};
 use downpour_render::rain::{
     DropMasks, EnvironmentMap, Exposure, Rain, RainOptions, ScreenDrop, StreakSamples,
 };

@@ -2,6 +2,7 @@
 //! method is described.
 
 use downpour_math::ops;
+use downpour_math::packing::packing_unpack_half;
 use downpour_shaders::render::drop_light::DROP_ATLAS_ROWS;
 use downpour_shaders::render::medium::{MEDIUM_SKY, MEDIUM_SKY_REACH};
 use downpour_shaders::render::rain::{
@@ -16,8 +17,7 @@ use super::drops_frame::DropsView;
 use super::drops_mask::drops_mask_unit;
 use super::drops_shade::DropsShade;
 use super::environment::EnvironmentMap;
-use super::glint::drop_glint_right;
-use super::glint::drop_glint_rousseau;
+use super::glint::{drop_glint_right, drop_glint_rousseau};
 use super::streak::{
     ScreenDrop, StreakChord, streak_chord, streak_cover, streak_depth, streak_mask_position, streak_nearest,
     streak_time, streak_weight,
@@ -26,7 +26,6 @@ use super::streak_lookup::StreakTable;
 use super::tiles::TileLists;
 use super::{DropMasks, Rain, StreakProfiles, StreakRay, streak_light, streak_rays};
 use crate::camera::Camera;
-use crate::halves::unpack;
 
 /// Position of a ray on the plane at distance 1 through a drop's center.
 #[must_use]
@@ -360,7 +359,7 @@ impl Buffers<'_> {
         let scene = self.clean[index][3];
         let lamps = self.medium.get(index).copied().map_or(Vec4::ZERO, Vec4::from);
         // Mean distance of the medium's light of lamps, and its optical depth.
-        let [mean, depth] = unpack(lamps.w.to_bits());
+        let [mean, depth] = packing_unpack_half(lamps.w.to_bits());
         let lamps = lamps.truncate();
         let direction = drops_mask_unit(self.view.frame.camera.camera_ray(x as f32 + 0.5, y as f32 + 0.5));
         let span = medium.medium_span(direction);
