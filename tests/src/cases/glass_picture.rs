@@ -278,7 +278,14 @@ fn case(gpu: &Gpu, keys: &str) -> Result<Run, GpuError> {
     let [plate, rain] = [gpu.storage_buffer("plate", &plate)?, gpu.storage_buffer("rain", &rain)?];
     let environment = gpu.storage_buffer("environment map", &capture)?;
     let seen = BehindGlass { plate: &plate, rain: &rain, environment: &environment };
-    let made = GlassRenderer::new(gpu)?.through(&glass, &seen)?;
+    let renderer = GlassRenderer::new(gpu)?;
+    let first = renderer.through(&glass, &seen)?;
+    let buffers = renderer.buffers_made();
+    let made = renderer.through(&glass, &seen)?;
+    assert!(
+        made == first && renderer.buffers_made() == buffers,
+        "a like picture takes the buffers of the one before"
+    );
     Ok(Run {
         arguments: (0..SIZE[0] * SIZE[1])
             .map(|i| [i % SIZE[0], i / SIZE[0]].map(|c| (c as f32).to_bits()).to_vec())
