@@ -215,3 +215,82 @@ fn a_circle_is_found() {
     assert!(circle(&imports(&[("a", "b"), ("b", "c"), ("a", "c"), ("c", "d")])).is_none());
     assert_eq!(names_after("use crate::{a::B, c}; x(crate::d::E)", "crate::"), ["a", "c", "d"]);
 }
+
+/// The files that ARCHITECTURE.md says an effect goes to are there, and the numbered ones are fewer than fifteen.
+#[test]
+fn an_effect_goes_to_files_that_are_there() {
+    let text = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    let section = text.split("\n## ").find(|section| section.starts_with("Where an effect goes")).unwrap();
+    let paths = |text: &str| -> BTreeSet<String> {
+        let quoted = text.split('`').skip(1).step_by(2);
+        quoted.filter(|word| word.contains('/')).map(str::to_owned).collect()
+    };
+    for path in paths(section) {
+        assert!(root().join(&path).is_file(), "{path} is not there");
+    }
+    let is_numbered = |line: &&str| line.starts_with(|c: char| c.is_ascii_digit());
+    let lines: Vec<&str> = section.lines().filter(is_numbered).collect();
+    let listed = paths(&lines.join("\n"));
+    assert!(listed.len() == lines.len() && (1..15).contains(&listed.len()), "{} files", listed.len());
+    for path in &listed {
+        let text = fs::read_to_string(root().join(path)).unwrap().to_lowercase();
+        assert!(path.ends_with("goldens.rs") || text.contains("splash"), "{path} has nothing of splashes");
+    }
+}
+
+/// Names at the root of a crate: modules and what it exports, without what only parity needs.
+fn root_names(text: &str) -> Vec<String> {
+    let mut names = Vec::new();
+    let mut is_hidden = false;
+    let mut rest = text;
+    while let Some((line, after)) = rest.split_once('\n') {
+        let mut statement = line.to_owned();
+        rest = after;
+        if line.starts_with("pub use") {
+            while !statement.contains(';') {
+                let Some((more, after)) = rest.split_once('\n') else { break };
+                statement += more;
+                rest = after;
+            }
+            let inside = statement.split_once('{').map_or_else(
+                || statement.rsplit("::").next().unwrap_or_default(),
+                |(_, inside)| inside.split('}').next().unwrap_or_default(),
+            );
+            let found = inside.split(',').map(|name| name.trim().trim_end_matches(';').to_owned());
+            names.extend(found.filter(|name| !name.is_empty() && !is_hidden));
+        } else if line.starts_with("pub ") && !is_hidden {
+            let name = line.split([' ', '(', '<', ':', ';', '{']).nth(2).unwrap_or_default();
+            names.push(name.to_owned());
+        }
+        is_hidden = line.contains("doc(hidden)") || is_hidden && line.starts_with("#[");
+    }
+    names
+}
+
+/// A reader of the documentation sees few names first.
+#[test]
+fn roots_have_few_names() {
+    for name in ["downpour-render", "downpour-specimen", "downpour-trace"] {
+        let names = root_names(&fs::read_to_string(folder(name).join("src/lib.rs")).unwrap());
+        assert!((5..=60).contains(&names.len()), "{name}: {} names: {names:?}", names.len());
+    }
+    let text = "pub mod a;\nmod b;\n#[doc(hidden)]\npub mod c;\npub use a::{D,\n    E};\npub use a::F;\npub fn g() {}\n";
+    assert_eq!(root_names(text), ["a", "D", "E", "F", "g"]);
+}
+
+/// What is hidden from the documentation of the renderer's crates is behind the feature `parity`.
+#[test]
+fn hidden_modules_are_behind_the_feature_parity() {
+    for name in ["downpour-render", "downpour-specimen", "downpour-trace"] {
+        for path in rust_files(&folder(name).join("src")).unwrap() {
+            let text = fs::read_to_string(&path).unwrap();
+            let lines: Vec<&str> = text.lines().map(str::trim).collect();
+            for (k, pair) in lines.windows(2).enumerate() {
+                if pair[0] == "#[doc(hidden)]" && pair[1].starts_with("pub mod") {
+                    let before = k.checked_sub(1).and_then(|k| lines.get(k)).copied().unwrap_or_default();
+                    assert_eq!(before, "#[cfg(feature = \"parity\")]", "{}: {}", path.display(), pair[1]);
+                }
+            }
+        }
+    }
+}

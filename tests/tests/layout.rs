@@ -25,7 +25,7 @@ use downpour_render::rain::medium::MediumFrame;
 use downpour_render::rain::profiles::ProfilesFrame;
 use downpour_render::rain::project::ProjectFrame;
 use downpour_render::rain::tiles::TilesFrame;
-use downpour_render::rain::{DropsDrop, DropsFrame, StreakPath, StreakRay};
+use downpour_render::rain::{DropsFrame, ScreenDrop, StreakPath, StreakRay};
 use downpour_render::tone::ToneFrame;
 use downpour_shaders::render::specimen;
 use downpour_shaders::{
@@ -126,8 +126,8 @@ fn hosts() -> Vec<Host> {
             size, coarse, first, coarse_first, weight, coarse_weight, fraction, extinction, is_added, offset),
         host!(MediumFrame as "MediumFrame" in &render::medium::MEDIUM,
             depths, rise, all, center, region, size, flatness, eye, open, columns, rows, lit, shape, pane, fog, fog_phase),
-        host!(DropsDrop as "DropsDrop" in &render::rain::STREAK,
-            towards, distance, position, slope, half_extent, mask_index, area, grid, start, along, first, way, oval, depth_ratio,
+        host!(ScreenDrop as "ScreenDrop" in &render::rain::STREAK,
+            towards, distance, position, slope, half_extent, mask_index, area, grid, start, along, first, screen_delta, oval, depth_ratio,
             mode_phase, cycles, fraction, spread, nearest, kind, shape, profile, weights, reach, id),
         host!(StreakPath as "StreakPath" in &render::rain::STREAK_PATH,
             shape, volume, volume_last, wide, tall, index, lobe, amplitudes, rows, columns, profile_rows, fine,

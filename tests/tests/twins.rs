@@ -1,4 +1,5 @@
-//! Every WGSL function has a Rust function of its name, but for those that are listed here.
+//! Every WGSL function has a Rust function of its name, and every Rust function that is named after a WGSL file a WGSL function, but for
+//! those that are listed here.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -71,4 +72,93 @@ fn every_shader_function_has_a_twin_of_its_name() {
     for name in listed {
         assert!(all.contains(name) && !twins.contains(name), "{name} is listed for nothing");
     }
+}
+
+/// Functions of twins that have no WGSL function of their name, and why.
+const HOST_ONLY: [(&[&str], &str); 9] = [
+    (
+        &["bvh_bounds_within", "bvh_nearest"],
+        "the walk for the CPU's callers, with an option in place of a distance below 0",
+    ),
+    (
+        &[
+            "packing_pack_half",
+            "packing_pack_snorm",
+            "packing_pack_unorm",
+            "packing_unpack_half",
+            "packing_unpack_snorm",
+            "packing_unpack_unorm",
+        ],
+        "WGSL has them built in",
+    ),
+    (&["pyramid_append", "pyramid_levels"], "the host's loop over levels, with a dispatch for each"),
+    (
+        &["drop_light_rows", "motion_diameter_bits", "motion_table", "project_frequencies"],
+        "tables that the host makes",
+    ),
+    (&["refine_shift"], "the host shifts the camera of a frame"),
+    (
+        &["tone_automatic_exposure", "tone_number", "tone_picture"],
+        "the exposure is found on the CPU; the loop over pixels",
+    ),
+    (&["step_bounces"], "the host decides whether drops rebound"),
+    (&["specimen_light"], "the loop of main_specimen over the reflections"),
+    (
+        &["path_light", "surface_emission"],
+        "path_light: turns 1 and on of the loop of path_trace. WGSL has one loop for the surface and for the rays that look for its \
+         light, so that the hierarchy's walk and the materials stand in the kernel once: software drivers inline each call and compile it \
+         again. surface_emission: a part of surface_at",
+    ),
+];
+
+/// Functions outside of tests in a text, that begin with a stem.
+fn named_after(text: &str, stem: &str) -> BTreeSet<String> {
+    let is_name = |c: char| c.is_alphanumeric() || c == '_';
+    let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+    let names = code.split("fn ").skip(1).map(|rest| rest.chars().take_while(|&c| is_name(c)).collect());
+    names.filter(|name: &String| name.strip_prefix(stem).is_some_and(|rest| rest.starts_with('_'))).collect()
+}
+
+/// Stems of the WGSL files whose twin a file says that it is.
+fn twin_of(text: &str) -> Vec<String> {
+    let documentation: String =
+        text.lines().filter_map(|line| line.strip_prefix("//!")).collect::<Vec<_>>().join("");
+    if !documentation.contains("win of") {
+        return Vec::new();
+    }
+    let files = documentation.split('`').filter_map(|word| word.strip_suffix(".wgsl"));
+    files.filter_map(|path| path.rsplit('/').next()).map(str::to_owned).collect()
+}
+
+/// A stage of a kernel that only the CPU has is a kernel written in another way.
+#[test]
+fn every_function_of_a_twin_is_one_of_the_shader() {
+    let shaders: BTreeSet<String> = all_functions().into_iter().collect();
+    let listed: BTreeSet<&str> = HOST_ONLY.iter().flat_map(|(names, _)| names.iter().copied()).collect();
+    let (mut without, mut used) = (BTreeSet::new(), BTreeSet::new());
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
+    for path in rust_files(&crates).unwrap() {
+        let text = fs::read_to_string(&path).unwrap();
+        let mut stems = twin_of(&text);
+        // Parts of a twin in files of their own.
+        stems.extend(
+            path.parent()
+                .and_then(Path::file_name)
+                .map(|folder| folder.to_string_lossy().into_owned())
+                .filter(|folder| {
+                    fs::read_to_string(path.with_file_name("..").join(format!("{folder}.rs")))
+                        .is_ok_and(|text| twin_of(&text).contains(folder))
+                }),
+        );
+        for name in
+            stems.iter().flat_map(|stem| named_after(&text, stem)).filter(|name| !shaders.contains(name))
+        {
+            match listed.get(name.as_str()) {
+                Some(name) => used.insert(*name),
+                None => without.insert(format!("{}: {name}", path.display())),
+            };
+        }
+    }
+    assert!(without.is_empty(), "no WGSL function of this name: {without:#?}");
+    assert_eq!(used, listed, "listed for nothing");
 }

@@ -14,7 +14,7 @@ use downpour::sim::SimError;
 use downpour::specimen::SpecimenError;
 use downpour::street::StreetError;
 use downpour::trace::puddle::PuddleError;
-use downpour::trace::stage::StageError;
+use downpour::trace::stage::FrameSceneError;
 use downpour::wind::WindError;
 
 /// Any error without a specific code, such as a bug in Downpour.
@@ -149,7 +149,7 @@ impl ExitCode for StreetError {
     }
 }
 
-impl ExitCode for StageError {
+impl ExitCode for FrameSceneError {
     fn exit_code(&self) -> u8 {
         match self {
             Self::Render(error) => error.exit_code(),
@@ -165,7 +165,7 @@ impl ExitCode for ShowerError {
             Self::Sim(error) => error.exit_code(),
             Self::Wind(error) => error.exit_code(),
             Self::Render(error) => error.exit_code(),
-            Self::Stage(error) => error.exit_code(),
+            Self::FrameScene(error) => error.exit_code(),
             Self::Pane(error) => error.exit_code(),
             _ => INPUT,
         }
@@ -187,7 +187,7 @@ impl ExitCode for RendererError {
     fn exit_code(&self) -> u8 {
         match self {
             Self::Scene(error) => error.exit_code(),
-            Self::Stage(error) => error.exit_code(),
+            Self::FrameScene(error) => error.exit_code(),
             Self::Shower(error) => error.exit_code(),
             Self::Pane(error) => error.exit_code(),
             Self::Mask(error) => error.exit_code(),

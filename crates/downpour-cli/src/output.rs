@@ -1,24 +1,18 @@
-//! Atomic output files: complete or absent.
+//! Output files of the command: complete or absent ([`downpour::output_file`]).
 //!
-//! The contents are written to a temporary file in the same folder, synced to the disk, and renamed in one
-//! step. An existing name gets new contents only if requested, and only if it is a plain file: a
-//! symbolic link is neither followed nor replaced.
-//!
-//! The temporary file is locked while its process lives. One without lock is from a process that was killed;
-//! the next one that publishes in the folder removes it.
+//! An existing name gets new contents only if requested, and only if it is a plain file: a
+//! symbolic link is neither followed nor replaced. A temporary file of a process that was killed is removed by
+//! the next one that publishes in the folder.
 
-use std::fs::{self, File};
-use std::io::{self, Write as _};
+use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 
-use tempfile::{Builder, NamedTempFile};
+use downpour::output_file::{PartialFile, sync_folder};
+pub(crate) use downpour::output_file::{folder_of, remove_leftovers};
 
 use crate::failure::{FILES, Failure, shown};
 use crate::interrupt::Interrupt;
-
-/// Prefix of the names of temporary files.
-const PREFIX: &str = ".downpour-";
-const SUFFIX: &str = ".part";
 
 /// An output file that can be published.
 #[derive(Debug)]
@@ -78,23 +72,16 @@ impl OutputFile {
         let failed = |error: &io::Error| Failure::file(&self.path, error);
         let mut part = {
             let mut unfinished = interrupt.unfinished();
-            let part = create(&self.folder).map_err(|error| failed(&error))?;
+            let part = PartialFile::new(&self.folder).map_err(|error| failed(&error))?;
             *unfinished = Some(part.path().to_owned());
             part
         };
-        // A file system without locks publishes as well; only leftovers stay then.
-        let _ = part.as_file().try_lock();
-        let written = part.write_all(bytes).and_then(|()| part.as_file().sync_all());
+        let written = part.write(bytes);
         let mut unfinished = interrupt.unfinished();
         let renamed = match written {
-            Ok(()) => self.check_name().and_then(|()| {
-                let done = if self.overwrite {
-                    part.persist(&self.path)
-                } else {
-                    part.persist_noclobber(&self.path)
-                };
-                done.map_err(|error| failed(&error.error))
-            }),
+            Ok(()) => self
+                .check_name()
+                .and_then(|()| part.rename(&self.path, self.overwrite).map_err(|error| failed(&error))),
             Err(error) => {
                 drop(part);
                 Err(failed(&error))
@@ -102,49 +89,15 @@ impl OutputFile {
         };
         *unfinished = None;
         drop(unfinished);
-        renamed?;
-        // The name is on the disk once its folder is. Not every file system supports that, and the file is complete anyway.
-        let _ = File::open(&self.folder).and_then(|folder| folder.sync_all());
+        sync_folder(&renamed?);
         Ok(())
-    }
-}
-
-/// The folder of a file.
-pub(crate) fn folder_of(path: &Path) -> &Path {
-    match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    }
-}
-
-fn create(folder: &Path) -> io::Result<NamedTempFile> {
-    let mut builder = Builder::new();
-    builder.prefix(PREFIX).suffix(SUFFIX);
-    // Temporary files are private by default; this one becomes an ordinary file, with the rights of the user's umask.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(folder)
-}
-
-/// Removes temporary files whose process is gone.
-pub(crate) fn remove_leftovers(folder: &Path) {
-    let Ok(entries) = fs::read_dir(folder) else { return };
-    for entry in entries.flatten() {
-        let name = entry.file_name();
-        let name = name.to_string_lossy();
-        let plain = entry.file_type().is_ok_and(|kind| kind.is_file());
-        if plain
-            && name.starts_with(PREFIX)
-            && name.ends_with(SUFFIX)
-            && File::open(entry.path()).is_ok_and(|file| file.try_lock().is_ok())
-        {
-            let _ = fs::remove_file(entry.path());
-        }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::fs::File;
+
     use super::*;
 
     fn names(folder: &Path) -> Vec<String> {

@@ -14,7 +14,7 @@ const MIN_BYTES: u64 = 256 << 10;
 const SMALL: u64 = 4 << 20;
 
 /// Buffers of a label that are kept after they were given back.
-const MOST_RETURNED: usize = 4;
+const MAX_RETURNED: usize = 4;
 
 /// Maker of buffers: a [`Gpu`], which creates each anew, or a [`BufferPool`], which keeps them for the next frame.
 pub trait BufferSource {
@@ -120,7 +120,7 @@ impl BufferPool {
     pub fn give_back(&self, label: &'static str, buffer: wgpu::Buffer) {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let returned = kept.returned.entry(label).or_default();
-        if returned.len() < MOST_RETURNED {
+        if returned.len() < MAX_RETURNED {
             returned.push(buffer);
         }
     }

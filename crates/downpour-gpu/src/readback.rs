@@ -14,7 +14,7 @@ use crate::{Gpu, GpuError};
 const CALLBACK: Duration = Duration::from_secs(5);
 
 /// Buffers that are kept: those of some frames.
-const MOST_FREE: usize = 32;
+const MAX_FREE: usize = 32;
 
 /// Buffers through which a host reads, kept for the next time.
 #[derive(Clone, Debug, Default)]
@@ -119,7 +119,7 @@ impl Readback {
         drop(view);
         staging.buffer.unmap();
         let mut free = self.pool.free.lock().unwrap_or_else(PoisonError::into_inner);
-        if free.len() >= MOST_FREE {
+        if free.len() >= MAX_FREE {
             free.remove(0);
         }
         free.push(staging.buffer);

@@ -74,7 +74,7 @@ pub struct Exit<R> {
 
 /// Paths of a ray after the drop.
 #[derive(Clone, Copy, Debug)]
-pub struct Through<R> {
+pub struct TransmittedRay<R> {
     /// Direction of the light that is seen through the drop (from the drop to the scene), of length 1.
     pub direction: [R; 3],
     /// Fraction of unpolarized light transmitted by both interfaces; 0 if the light is lost inside.
@@ -239,7 +239,7 @@ pub fn mask_trace_reflectance<R: Real>(exit: &Exit<R>, index: R) -> [R; 2] {
 /// The ray should pass through the drop; one that misses is treated as grazing.
 #[inline(always)]
 #[must_use]
-pub fn mask_trace_through<R: Real>(drop: &TracedDrop, x: R, y: R) -> Through<R> {
+pub fn mask_trace_through<R: Real>(drop: &TracedDrop, x: R, y: R) -> TransmittedRay<R> {
     let zero = x.constant(0.0);
     let one = x.constant(1.0);
     let half = x.constant(0.5);
@@ -274,7 +274,7 @@ pub fn mask_trace_through<R: Real>(drop: &TracedDrop, x: R, y: R) -> Through<R> 
     let second_mean = one - (second_s + second_p) * half;
     let internal = kept * second_mean + second_polarized * (second_p - second_s) * half;
     let lost = zero.less(exit.lost);
-    Through {
+    TransmittedRay {
         direction: normalize(exit.outside),
         transmittance: R::select(lost, zero, through),
         reflected: normalize(reflected),

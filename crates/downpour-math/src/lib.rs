@@ -1,6 +1,8 @@
 //! Numeric foundation of Downpour.
 //!
 //! - [`ops`]: transcendental functions with the same bits on every machine;
+//! - [`bins`]: lists by bins;
+//! - [`color`], [`equirect`], [`octant`]: luminance and sRGB, equirectangular maps, angles from tangents;
 //! - [`rng`]: counter-based random numbers, bit-equal to the GPU's;
 //! - [`packing`]: unit vectors in two numbers;
 //! - [`pyramid`]: mip levels of a map;
@@ -12,6 +14,10 @@
 
 mod out_of_range;
 
+pub mod bins;
+pub mod color;
+pub mod equirect;
+pub mod octant;
 pub mod ops;
 pub mod packing;
 pub mod pyramid;

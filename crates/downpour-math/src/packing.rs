@@ -3,6 +3,7 @@
 //! Source: Q. Meyer et al., "On Floating-Point Normal Vectors", EGSR 2010; Z. Cigolle et al., JCGT 3(2), 2014.
 
 use downpour_shaders::common::PACKING_MIN_NORM;
+use half::f16;
 
 /// Sign of `x` as 1 or -1; zero counts as positive.
 #[inline]
@@ -43,6 +44,30 @@ pub fn packing_octahedral_decode(square: [f32; 2]) -> [f32; 3] {
     [x * inverse, y * inverse, z * inverse]
 }
 
+/// Texel of an octahedral map of `size` texels along an edge. Beyond an edge, the map continues mirrored about the edge's middle.
+///
+/// ```
+/// use downpour_math::packing::packing_octahedral_texel;
+/// assert_eq!(packing_octahedral_texel(8, 3, 5), [3, 5]);
+/// assert_eq!(packing_octahedral_texel(8, -1, 2), [0, 5]);
+/// assert_eq!(packing_octahedral_texel(8, 8, 8), [0, 0]);
+/// ```
+#[inline]
+#[must_use]
+pub fn packing_octahedral_texel(size: u32, column: i32, row: i32) -> [u32; 2] {
+    let edge = size as i32;
+    let (mut x, mut y) = (column, row);
+    if x < 0 || x >= edge {
+        x = x.clamp(0, edge - 1);
+        y = edge - 1 - y;
+    }
+    if y < 0 || y >= edge {
+        y = y.clamp(0, edge - 1);
+        x = edge - 1 - x;
+    }
+    [x.clamp(0, edge - 1) as u32, y.clamp(0, edge - 1) as u32]
+}
+
 /// Packs two numbers in [-1, 1] into 16 bits each, as WGSL's `pack2x16snorm`.
 #[inline]
 #[must_use]
@@ -71,6 +96,19 @@ pub fn packing_pack_unorm(pair: [f32; 2]) -> u32 {
 #[must_use]
 pub fn packing_unpack_unorm(word: u32) -> [f32; 2] {
     [word as u16, (word >> 16) as u16].map(|half| f32::from(half) / 65535.0)
+}
+
+/// Unpacks both 16-bit floats of a word, as WGSL's `unpack2x16float`.
+#[must_use]
+pub fn packing_unpack_half(word: u32) -> [f32; 2] {
+    [f16::from_bits(word as u16).to_f32(), f16::from_bits((word >> 16) as u16).to_f32()]
+}
+
+/// Packs two numbers as 16-bit floats, rounded to the nearest, as WGSL's `pack2x16float`.
+#[must_use]
+pub fn packing_pack_half(pair: [f32; 2]) -> u32 {
+    let [low, high] = pair.map(|x| u32::from(f16::from_f32(x).to_bits()));
+    low | high << 16
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Plates of host applications: color and depth textures as radiance and distance, and an environment map made of them.
 //! Twin of `shaders/wgsl/render/host_*.wgsl`.
 
+use downpour_math::equirect::equirect_coordinates;
 use downpour_math::ops;
 use downpour_math::packing::packing_octahedral_decode;
 use downpour_math::pyramid::{PyramidRounding, pyramid, pyramid_levels};
@@ -140,14 +141,6 @@ pub fn host_environment_position(camera: &Camera, direction: Vec3) -> Vec3 {
     Vec3::new(place(x, camera.width), place(y, camera.height), outside)
 }
 
-/// Texture coordinates of a direction of length 1 in an equirectangular map, +Y up.
-#[must_use]
-pub fn host_environment_coordinates(direction: Vec3) -> Vec2 {
-    let horizontal = (direction.x * direction.x + direction.z * direction.z).sqrt();
-    let turn = if horizontal > 1.0e-6 { ops::atan2(direction.z, direction.x) } else { 0.0 };
-    Vec2::new(0.5 + turn * 0.159_154_94, 0.5 - ops::atan2(direction.y, horizontal) * 0.318_309_87)
-}
-
 impl HostEnvironmentFrame {
     /// The frame of a map of `size` texels along an edge, of a picture; `sky_scale` is the radiance of the color 1 of a sky map,
     /// if there is one.
@@ -233,7 +226,8 @@ impl HostEnvironment<'_> {
         for k in 0..HOST_SKY_TAPS * HOST_SKY_TAPS {
             let dx = ((k % HOST_SKY_TAPS) as f32 + 0.5) / HOST_SKY_TAPS as f32;
             let dy = ((k / HOST_SKY_TAPS) as f32 + 0.5) / HOST_SKY_TAPS as f32;
-            let uv = host_environment_coordinates(self.host_environment_direction(x, y, dx, dy));
+            let direction = self.host_environment_direction(x, y, dx, dy);
+            let uv = Vec2::from(equirect_coordinates(direction.to_array()));
             let at = (uv * size).clamp(Vec2::ZERO, size - 1.0);
             let [r, g, b, _] = texels[(at.y as u32 * width + at.x as u32) as usize];
             sum += host_radiance_checked(Vec3::new(r, g, b), self.frame.sky_scale);

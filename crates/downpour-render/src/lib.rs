@@ -20,11 +20,8 @@ pub mod glass;
 pub mod glow;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
-#[doc(hidden)]
-pub mod halves;
 pub mod host;
 pub mod light;
-#[doc(hidden)]
 pub mod path_lattice;
 pub mod picture;
 pub mod plate;

@@ -4,7 +4,7 @@ use std::f32::consts::PI;
 
 use downpour_shaders::render::pane_shadow::PANE_SHADOW_SUN;
 use downpour_shaders::render::scene::{
-    LIGHT_LARGEST_SPREAD, SCENE_FAR, SCENE_LIGHT_AREA, SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_POINT,
+    LIGHT_MAX_SPREAD, SCENE_FAR, SCENE_LIGHT_AREA, SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_POINT,
     SCENE_LIGHT_ROWS,
 };
 use glam::{Vec3, Vec4};
@@ -140,11 +140,8 @@ impl Light {
         // An area shines to both sides.
         let shape = if self.kind == SCENE_LIGHT_AREA { cosine.abs() } else { edge * edge };
         let irradiance = self.color * (window * shape / square);
-        let spread = if self.kind == SCENE_LIGHT_AREA {
-            0.0
-        } else {
-            (self.radius / distance).min(LIGHT_LARGEST_SPREAD)
-        };
+        let spread =
+            if self.kind == SCENE_LIGHT_AREA { 0.0 } else { (self.radius / distance).min(LIGHT_MAX_SPREAD) };
         LightSample { direction, distance, irradiance, spread }
     }
 }

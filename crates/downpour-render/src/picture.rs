@@ -71,7 +71,7 @@ pub struct Picture {
     /// first.
     pub drawn: Vec<u32>,
     /// Environment map around the eye, all levels of an octahedral map.
-    pub surroundings: Vec<[f32; 4]>,
+    pub environment: Vec<[f32; 4]>,
     /// The scene through the rain and through a pane of glass, if there is one.
     pub through_glass: Option<Vec<[f32; 3]>>,
     /// What glow adds to the radiance of each pixel, below 0 where it takes more than it brings; empty if nothing glows.
@@ -98,7 +98,7 @@ impl Picture {
         rain: &Rain,
         clean: Vec<[f32; 4]>,
         layer: Vec<[f32; 4]>,
-        surroundings: Vec<[f32; 4]>,
+        environment: Vec<[f32; 4]>,
         passes: Vec<(&'static str, f64)>,
     ) -> Self {
         Self {
@@ -107,7 +107,7 @@ impl Picture {
             drawn: rain.drawn(&clean),
             clean,
             rain: layer,
-            surroundings,
+            environment,
             through_glass: None,
             glow: Vec::new(),
             passes,

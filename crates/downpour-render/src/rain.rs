@@ -21,8 +21,7 @@ mod drops_atlas;
 mod drops_capture;
 mod drops_frame;
 mod drops_glint;
-#[doc(hidden)]
-pub mod drops_mask;
+mod drops_mask;
 mod drops_shade;
 mod environment;
 pub mod exposure;
@@ -37,8 +36,7 @@ pub(crate) mod list;
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 pub mod list;
-#[doc(hidden)]
-pub mod masks;
+mod masks;
 pub mod medium;
 #[cfg(not(feature = "parity"))]
 pub(crate) mod profiles;
@@ -88,12 +86,13 @@ pub use crate::camera::EyeMotion;
 pub use drops_frame::DropsFrame;
 pub use environment::{EnvironmentFrame, EnvironmentMap};
 pub use exposure::{Exposure, StreakColor, StreakSamples, TemporalResponse};
+pub use glint::drop_glint_right;
 use light::DropLightOptions;
 pub use list::Rain;
-pub use masks::DropMasks;
+pub use masks::{DIAMETER_STEP, DIAMETERS, DropMasks};
 pub use medium::{MediumOptions, PanePlane, RainMedium};
 pub use profiles::StreakProfiles;
-pub use streak::DropsDrop;
+pub use streak::ScreenDrop;
 pub use streak_lookup::StreakTable;
 pub use streak_path::StreakPath;
 pub use streak_rays::StreakRay;

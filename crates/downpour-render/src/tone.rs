@@ -8,6 +8,7 @@ mod hue;
 
 use std::sync::LazyLock;
 
+use downpour_math::color::{color_luminance, linear_to_srgb};
 use downpour_math::ops;
 use downpour_shaders::render::tone::{TONE_DESATURATION, TONE_KEEPS_HUE, TONE_KHRONOS, TONE_START};
 use glam::Vec3;
@@ -18,12 +19,6 @@ pub use hue::{tone_hue, tone_linear, tone_oklab, tone_whiteness, tone_with_hue, 
 
 /// Middle gray.
 pub const GRAY: f32 = 0.18;
-
-/// Luminance of linear BT.709.
-#[must_use]
-pub fn tone_luminance(color: Vec3) -> f32 {
-    color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
-}
 
 /// A color of no channel below 0, less what a surface of gloss reflects of white surroundings.
 #[must_use]
@@ -58,8 +53,7 @@ pub fn tone_neutral(color: Vec3) -> Vec3 {
 #[must_use]
 pub fn tone_srgb(linear: f32) -> u8 {
     let v = linear.clamp(0.0, 1.0);
-    let encoded = if v <= 0.003_130_8 { v * 12.92 } else { 1.055 * ops::pow(v, 1.0 / 2.4) - 0.055 };
-    (encoded * 255.0).round() as u8
+    (linear_to_srgb(v) * 255.0).round() as u8
 }
 
 /// The exposure that puts the logarithmic mean of the picture at middle gray, within 16 stops of 1. Pixels are
@@ -68,7 +62,7 @@ pub fn tone_srgb(linear: f32) -> u8 {
 pub fn tone_automatic_exposure(pixels: &[[f32; 4]]) -> f32 {
     let (mut sum, mut count) = (0.0f64, 0u32);
     for [r, g, b, _] in pixels {
-        let y = tone_luminance(Vec3::new(*r, *g, *b));
+        let y = color_luminance([*r, *g, *b]);
         if y.is_finite() {
             sum += f64::from(ops::log2(y.max(1.0e-6)));
             count += 1;

@@ -28,7 +28,7 @@ fn picture(size: [u32; 2], radiance: f32, distance: f32, lamps: &[([u32; 2], f32
         clean,
         drops_on_screen: 0,
         drawn: Vec::new(),
-        surroundings: Vec::new(),
+        environment: Vec::new(),
         through_glass: None,
         glow: Vec::new(),
         passes: Vec::new(),

@@ -53,3 +53,8 @@ pub mod warning;
 pub use budget::Budget;
 pub use error::{Fault, SceneError};
 pub use warning::{Warning, WarningKind};
+
+/// The examples of the README, as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

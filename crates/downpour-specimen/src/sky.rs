@@ -11,10 +11,11 @@
 //!
 //! Twin of `shaders/wgsl/render/specimen.wgsl`.
 
+use downpour_math::octant::octant_turns;
 use downpour_math::ops::f64 as ops;
 use downpour_math::real::Real;
 use downpour_math::vector::{add, add_scaled, dot, scale, sub};
-use downpour_shaders::render::specimen::{SPECIMEN_TINY, SPECIMEN_TURN};
+use downpour_shaders::render::specimen::SPECIMEN_TINY;
 
 use super::SpecimenError;
 use super::lamp::{SpecimenLamp, specimen_lamp};
@@ -103,12 +104,7 @@ pub fn specimen_turns<R: Real>(y: R, x: R) -> R {
     let (wide, tall) = (x.abs(), y.abs());
     let longest = wide.at_least(tall).at_least(x.constant(f64::from(SPECIMEN_TINY)));
     let t = wide.at_most(tall) / longest;
-    let s = t * t;
-    let mut sum = x.constant(f64::from(SPECIMEN_TURN[8]));
-    for n in (0..8).rev() {
-        sum = sum * s + x.constant(f64::from(SPECIMEN_TURN[n]));
-    }
-    let octant = sum * t;
+    let octant = octant_turns(t);
     let quadrant = R::select(wide.less(tall), x.constant(0.25) - octant, octant);
     let half = R::select(x.less(zero), x.constant(0.5) - quadrant, quadrant);
     R::select(y.less(zero), -half, half)

@@ -32,11 +32,11 @@ use super::{Image, SpecimenError, SpecimenLamp};
 use downpour_render::camera::Viewpoint;
 use downpour_render::light::LightSource;
 use downpour_render::picture::{PictureOptions, through_rain};
-use downpour_render::rain::drops_mask::drops_mask_right;
+use downpour_render::rain::drop_glint_right;
 use downpour_render::rain::light::DropLights;
-use downpour_render::rain::masks::{DIAMETER_STEP, DIAMETERS};
+use downpour_render::rain::{DIAMETER_STEP, DIAMETERS};
 use downpour_render::rain::{
-    DropMasks, DropsDrop, EnvironmentMap, Exposure, Rain, RainOptions, StreakSamples,
+    DropMasks, EnvironmentMap, Exposure, Rain, RainOptions, ScreenDrop, StreakSamples,
 };
 use downpour_trace::builder::SceneBuilder;
 use downpour_trace::capture::trace_environment;
@@ -298,7 +298,7 @@ fn background(view: &View, sky: Sky<'_>) -> Vec<[f32; 4]> {
 }
 
 /// Sets the phases of the specimen, and the lobe of the mode (3,1) toward +X.
-fn set_phases(drop: &mut DropsDrop, options: &SpecimenOptions) {
+fn set_phases(drop: &mut ScreenDrop, options: &SpecimenOptions) {
     if options.oscillation == Amplitudes::NONE {
         return;
     }
@@ -309,5 +309,5 @@ fn set_phases(drop: &mut DropsDrop, options: &SpecimenOptions) {
         *begin = (f64::from(*begin) + late).rem_euclid(1.0) as f32;
     }
     let [_, a31] = options.oscillation.pair();
-    drop.mode_phase[1] = a31 as f32 * drops_mask_right(drop.towards.into()).x;
+    drop.mode_phase[1] = a31 as f32 * drop_glint_right(drop.towards.into()).x;
 }

@@ -1,6 +1,6 @@
 //! Pictures for textures: computed from a function of the tile, encoded as JPEG or PNG.
 
-use downpour_math::ops;
+use downpour_math::color::linear_to_srgb;
 use image::codecs::jpeg::JpegEncoder;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
@@ -85,7 +85,7 @@ impl Raster {
     /// The bytes of the file.
     pub(crate) fn encode(&self, format: Format) -> Result<Vec<u8>, String> {
         let byte = |v: f32| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
-        let color = |v: f32| byte(srgb(v.clamp(0.0, 1.0)));
+        let color = |v: f32| byte(linear_to_srgb(v.clamp(0.0, 1.0)));
         let (w, h) = (self.width, self.height);
         let mut bytes = Vec::new();
         let texels = self.texels.iter();
@@ -123,11 +123,6 @@ fn jpeg(bytes: &mut Vec<u8>) -> JpegEncoder<&mut Vec<u8>> {
 
 fn png(bytes: &mut Vec<u8>) -> PngEncoder<&mut Vec<u8>> {
     PngEncoder::new_with_quality(bytes, CompressionType::Best, FilterType::Adaptive)
-}
-
-/// The sRGB transfer function (IEC 61966-2-1).
-fn srgb(v: f32) -> f32 {
-    if v <= 0.003_130_8 { v * 12.92 } else { 1.055 * ops::pow(v, 1.0 / 2.4) - 0.055 }
 }
 
 #[cfg(test)]

@@ -17,7 +17,7 @@ use crate::wet::{WET_ROWS_THAT_CHANGE, wet_fraction};
 const SEED_DIMENSION: u32 = 4121;
 
 /// Change of a wetness between 0 and 1 that counts as none.
-const LEAST_WETTING: f32 = 1.0 / 128.0;
+const MIN_WETTING: f32 = 1.0 / 128.0;
 
 /// Fluxes of rain that surfaces meet, for which wetness is compared.
 const FLUXES: [f32; 3] = [1.0, 0.2, 0.04];
@@ -107,7 +107,7 @@ fn shows_alike(before: &SceneData, scene: &SceneData) -> bool {
         let wet = scene.wet_load();
         FLUXES.map(|flux| wet_fraction(wet.before, wet.kept, wet.since, flux))
     };
-    wetness(before).iter().zip(wetness(scene)).all(|(a, b)| (a - b).abs() <= LEAST_WETTING)
+    wetness(before).iter().zip(wetness(scene)).all(|(a, b)| (a - b).abs() <= MIN_WETTING)
 }
 
 #[cfg(test)]

@@ -90,7 +90,7 @@ pub use picture::{picture_frame, render_picture};
 pub use puddle::{PuddleError, PuddleLook, PuddleMap};
 pub use scene::SceneView;
 pub use sky_light::SkyLight;
-pub use stage::{Stage, StageError};
+pub use stage::{FrameScene, FrameSceneError};
 pub use wet::SceneWetness;
 pub use wet_ground::WetGround;
 

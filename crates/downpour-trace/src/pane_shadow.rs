@@ -18,7 +18,7 @@ use glam::{DVec3, Vec2, Vec3};
 
 use crate::data::SceneData;
 use crate::scene::SceneView;
-use crate::stage::Stage;
+use crate::stage::FrameScene;
 
 impl SceneData {
     /// Removes the rows of the pane, which are the last of the table, and returns them; none without a pane.
@@ -66,7 +66,7 @@ impl SceneData {
 /// True if anything that the picture may show is lit through the pane: something on the eye's side of it, within the box
 /// around the eye and the pane, and a lamp or a sun.
 #[must_use]
-pub fn is_lit_through(pane: &WetPane, stage: &Stage) -> bool {
+pub fn is_lit_through(pane: &WetPane, stage: &FrameScene) -> bool {
     let Ok([corner, across, down, _]) = pane.axes(&stage.viewpoint) else { return false };
     if stage.data.light_count == 0 || !pane.has_shadows() {
         return false;
@@ -88,7 +88,7 @@ pub fn is_lit_through(pane: &WetPane, stage: &Stage) -> bool {
 ///
 /// # Errors
 /// As [`WetPane::axes`] and [`WetPane::shade`].
-pub fn set_pane(pane: &WetPane, stage: &mut Stage) -> Result<(), PaneError> {
+pub fn set_pane(pane: &WetPane, stage: &mut FrameScene) -> Result<(), PaneError> {
     let Some(shade) = pane.shade()? else { return Ok(()) };
     let axes = pane.axes(&stage.viewpoint)?;
     stage.data.set_pane(&shade, axes.map(DVec3::as_vec3));

@@ -217,6 +217,11 @@ fn path_same_surface(last: &ViewPath, material: u32, facet: Vec3, position: Vec3
         && last.facet.dot(position - last.position).abs() < PATH_SAME_PLANE * distance
 }
 
+/// The direction that a mirror in the plane of a surface would show.
+fn path_mirrored(surface: &Surface, towards: Vec3) -> Vec3 {
+    towards - surface.normal * (2.0 * towards.dot(surface.normal))
+}
+
 impl SceneView<'_> {
     /// Traces a ray of the camera. If it meets the surface that `last` met, it sees the same.
     pub(crate) fn path_trace(
@@ -333,7 +338,9 @@ impl SceneView<'_> {
             let meeting = PathMeeting { surface: found, direct, glow, relief, is_soft, plan, told, slack };
             let light = self.path_light(&meeting, towards, cone, random, ripple, under);
             if let (Some(_), Some(water)) = (met, &mut water) {
-                throughput *= path.path_show_water(&meeting, &light, water.ripple, towards, throughput);
+                let fraction = path_water_fraction(water.ripple, -towards);
+                path.path_show_water(&meeting, &light, fraction, towards, throughput);
+                throughput *= 1.0 - fraction;
                 // On beneath the surface. Ground that the model does not have is where it would be, seen in the model.
                 let puddle = data.puddle_load(water.found.puddle);
                 towards = puddle_water_refracted(towards, found.normal);
@@ -548,7 +555,7 @@ impl SceneView<'_> {
         if surface.flags & SCENE_UNLIT != 0 {
             return;
         }
-        let mirrored = towards - surface.normal * (2.0 * towards.dot(surface.normal));
+        let mirrored = path_mirrored(&surface, towards);
         let of_gloss = if plan.chance > 0.0 { plan.rays } else { plan.mirrors };
         let mut base = light.base / plan.rays.max(1) as f32 + glow;
         let mut mirror = light.mirror / of_gloss.max(1) as f32;
@@ -603,18 +610,17 @@ impl ViewPath {
         };
     }
 
-    /// Adds what water mirrors, and returns the fraction of the light from beneath that comes out.
+    /// Adds what water mirrors, which is a fraction of the light.
     fn path_show_water(
         &mut self,
         meeting: &PathMeeting,
         light: &PathLight,
-        ripple: Vec3,
+        fraction: f32,
         towards: Vec3,
         throughput: Vec3,
-    ) -> f32 {
+    ) {
         let surface = &meeting.surface;
         let all = meeting.plan.mirrors as f32;
-        let fraction = path_water_fraction(ripple, -towards);
         self.radiance += throughput * meeting.direct;
         if meeting.plan.kept {
             self.mirror = PathSlot {
@@ -622,13 +628,12 @@ impl ViewPath {
                 factor: throughput * fraction,
                 slack: meeting.slack,
                 roughness: surface.roughness,
-                normal: towards - surface.normal * (2.0 * towards.dot(surface.normal)),
+                normal: path_mirrored(surface, towards),
                 position: surface.position,
             };
         } else {
             self.radiance += throughput * light.mirror / all;
             self.path_show_mirrored(light, throughput / all, meeting);
         }
-        1.0 - fraction
     }
 }

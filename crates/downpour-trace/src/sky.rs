@@ -3,28 +3,19 @@
 //! +Y is up; u = 0.5 + atan2(z, x) / 2 pi, v = 0.5 - asin(y) / pi from the top. Twin of
 //! `shaders/wgsl/render/sky.wgsl`.
 
+use downpour_math::equirect::equirect_coordinates;
 use downpour_math::ops;
 use downpour_shaders::render::scene::{SCENE_SKY_LEVELS, SKY_CONE_TEXELS};
 use glam::{Vec2, Vec3};
 
 use crate::data::SceneData;
 
-/// Texture coordinates of a direction of length 1.
-#[must_use]
-pub fn sky_coordinates(direction: Vec3) -> Vec2 {
-    let u = 0.5 + ops::atan2(direction.z, direction.x) * 0.159_154_94;
-    // The angle of (y, horizontal) is asin(y), and does not lose its digits near the poles.
-    let horizontal = (direction.x * direction.x + direction.z * direction.z).sqrt();
-    let v = 0.5 - ops::atan2(direction.y, horizontal) * 0.318_309_87;
-    Vec2::new(u, v)
-}
-
 impl SceneData {
     /// A level of the sky in a direction, bilinear.
     #[must_use]
     pub fn sky_level(&self, level: u32, direction: Vec3) -> Vec3 {
         let size = self.sky_levels[level as usize];
-        let uv = sky_coordinates(direction);
+        let uv = Vec2::from(equirect_coordinates(direction.to_array()));
         let (width, height) = (size[0] as i32, size[1] as i32);
         let x = uv.x * size[0] as f32 - 0.5;
         let y = (uv.y * size[1] as f32 - 0.5).clamp(0.0, size[1] as f32 - 1.0);

@@ -5,6 +5,7 @@
 //! (R. Ramamoorthi, P. Hanrahan, SIGGRAPH 2001); it serves where no ray is traced.
 
 use downpour_math::ops;
+use downpour_scene::sky::uv_to_direction;
 use downpour_shaders::render::scene::SCENE_SKY_LEVELS;
 use glam::Vec3;
 
@@ -78,10 +79,7 @@ fn row_area(j: u32, height: u32) -> f32 {
 
 /// The direction of the middle of a texel.
 pub(crate) fn direction_of(x: u32, y: u32, width: u32, height: u32) -> Vec3 {
-    let phi = std::f32::consts::TAU * ((x as f32 + 0.5) / width as f32 - 0.5);
-    let elevation = std::f32::consts::PI * (0.5 - (y as f32 + 0.5) / height as f32);
-    let r = ops::cos(elevation);
-    Vec3::new(r * ops::cos(phi), ops::sin(elevation), r * ops::sin(phi))
+    uv_to_direction([(x as f32 + 0.5) / width as f32, (y as f32 + 0.5) / height as f32]).into()
 }
 
 impl SkyLight {

@@ -9,6 +9,7 @@
 //! A neighbor counts as far as its normal agrees and as it is on the plane through the pixel's position; in the gloss, as far
 //! as it mirrors the same direction, within the lobe.
 
+use downpour_math::color::color_luminance;
 use downpour_shaders::render::scene::{
     SKYLIGHT_FILM, SKYLIGHT_FILM_EDGE, SKYLIGHT_LOBE, SKYLIGHT_NOISE, SKYLIGHT_PASSES, SKYLIGHT_RADIUS,
     SKYLIGHT_STEP,
@@ -38,11 +39,6 @@ struct SkylightSlot {
     position: Vec3,
     slack: f32,
     roughness: f32,
-}
-
-/// The luminance of a color, for comparisons.
-fn skylight_luminance(color: Vec3) -> f32 {
-    color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
 /// Agreement of two mirrored directions within the lobe of a roughness: 1 for the same direction, at least 0.
@@ -84,7 +80,7 @@ fn skylight_same(own: &SkylightSlot, other: &SkylightSlot, wet: bool) -> f32 {
 /// Similarity of two means given their noise, 0 to 1: variances are those of the means.
 #[must_use]
 pub fn skylight_alike(own: Vec4, other: Vec4) -> f32 {
-    let apart = skylight_luminance(own.truncate()) - skylight_luminance(other.truncate());
+    let apart = color_luminance(own.truncate().into()) - color_luminance(other.truncate().into());
     (1.0 - apart * apart / (SKYLIGHT_NOISE * (own.w + other.w)).max(1.0e-20)).max(0.0)
 }
 
@@ -158,7 +154,7 @@ impl Pixels<'_> {
                 }
                 if counts > 0.0 {
                     let light = self.slots[other][slot].light;
-                    let luminance = skylight_luminance(light);
+                    let luminance = color_luminance(light.into());
                     sum += light * counts;
                     squares += luminance * luminance * counts;
                     weight += counts;
@@ -167,7 +163,7 @@ impl Pixels<'_> {
             }
         }
         let mean = sum / weight;
-        let luminance = skylight_luminance(mean);
+        let luminance = color_luminance(mean.into());
         let variance = (squares / weight - luminance * luminance).max(0.0);
         // How many there are; of one alone nothing is known.
         let count = weight * weight / weights;

@@ -4,7 +4,7 @@
 //! `I` candela lights a surface at a distance `r` with `I / r^2` lux and a sun is given in lux.
 //!
 //! Far from the world's origin single precision is coarse (1 m at 10 000 km), so that buffers there are relative to a
-//! whole-number position near the eye, [`Stage::origin`].
+//! whole-number position near the eye, [`FrameScene::origin`].
 
 mod error;
 mod eye;
@@ -15,6 +15,7 @@ mod sky;
 #[cfg(test)]
 mod tests;
 
+use downpour_math::color::color_luminance;
 use downpour_math::in_range;
 use std::borrow::Cow;
 
@@ -22,15 +23,15 @@ use downpour_scene::scene::{Play, Pose};
 use downpour_sim::field::FallingDrop;
 use downpour_sim::view::View;
 use downpour_weather::{self as weather, Loaded, Reloaded, Weather};
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use crate::builder::SceneBuilder;
 use crate::data::SceneData;
 use crate::wet::SceneWetness;
 use downpour_render::RenderError;
 use downpour_render::camera::{EyeMotion, MAX_EXPOSURE_S, PictureEdge, Viewpoint, check_size};
-use downpour_render::tone::{GRAY, tone_automatic_exposure, tone_luminance};
-pub use error::StageError;
+use downpour_render::tone::{GRAY, tone_automatic_exposure};
+pub use error::FrameSceneError;
 pub use eye::CameraChoice;
 use eye::CameraView;
 
@@ -60,7 +61,7 @@ const BRIGHTEST: f32 = 1.0e4;
 
 /// A scene at one time: its buffers, light and camera.
 #[derive(Clone, Debug)]
-pub struct Stage {
+pub struct FrameScene {
     /// The scene's buffers, relative to `origin`.
     pub data: SceneData,
     /// The eye, relative to `origin`.
@@ -91,13 +92,13 @@ pub struct Stage {
     pub left_out: usize,
 }
 
-impl Stage {
+impl FrameScene {
     /// Builds the stage of a weather at a time in seconds: animated models, sky, sun, lamps, camera.
     ///
     /// # Errors
-    /// [`StageError::OverLimit`] above [`MAX_TRIANGLES`] or [`MAX_LIGHTS`], [`StageError::Memory`], or
+    /// [`FrameSceneError::OverLimit`] above [`MAX_TRIANGLES`] or [`MAX_LIGHTS`], [`FrameSceneError::Memory`], or
     /// [`RenderError`]: a picture outside [`PIXELS`](downpour_render::camera::PIXELS), a time beyond [`LATEST_S`], or an invalid camera.
-    pub fn new(weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, StageError> {
+    pub fn new(weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, FrameSceneError> {
         check_size(weather.size)?;
         in_range("time", time_s, "s", &(-LATEST_S..=LATEST_S), 1.0, "-1e6 to 1e6")
             .map_err(RenderError::from)?;
@@ -151,8 +152,8 @@ impl Stage {
     /// The same scene, which stands still, seen by the weather's eye of another time in seconds: its buffers are shared.
     ///
     /// # Errors
-    /// [`StageError::TooFar`] over 1 km from what the buffers are relative to; as [`Viewpoint::axes`].
-    pub fn seen_at(&self, weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, StageError> {
+    /// [`FrameSceneError::TooFar`] over 1 km from what the buffers are relative to; as [`Viewpoint::axes`].
+    pub fn seen_at(&self, weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, FrameSceneError> {
         let Some(seen) = CameraView::of(weather, loaded, &posed(loaded, time_s), time_s) else {
             let mut stage = self.clone();
             set_fov(&mut stage.viewpoint, weather, time_s);
@@ -162,7 +163,7 @@ impl Stage {
         };
         let distance_m = (seen.eye - self.origin).abs().max_element();
         if distance_m > NEAR_ORIGIN_M {
-            return Err(StageError::TooFar { distance_m });
+            return Err(FrameSceneError::TooFar { distance_m });
         }
         let mut viewpoint = seen.viewpoint(weather.camera.fov.unwrap_or(seen.fov), self.origin);
         set_fov(&mut viewpoint, weather, time_s);
@@ -178,7 +179,7 @@ impl Stage {
     /// the stage is built anew.
     ///
     /// # Errors
-    /// As [`Stage::seen_at`]; [`RenderError::Size`].
+    /// As [`FrameScene::seen_at`]; [`RenderError::Size`].
     pub fn in_weather(
         &self,
         before: &Weather,
@@ -186,7 +187,7 @@ impl Stage {
         loaded: &Loaded,
         reloaded: Reloaded,
         time_s: f64,
-    ) -> Result<Self, StageError> {
+    ) -> Result<Self, FrameSceneError> {
         check_size(weather.size)?;
         let mut stage = Self {
             size: weather.size,
@@ -223,12 +224,12 @@ impl Stage {
         view_of(&self.viewpoint, self.origin, self.size, self.depth, self.shutter_s, &self.motion)
     }
 
-    /// The part of space that a picture at a time in seconds would show: [`Stage::view`] of [`Stage::new`], without the scene
+    /// The part of space that a picture at a time in seconds would show: [`FrameScene::view`] of [`FrameScene::new`], without the scene
     /// where the eye does not depend on it.
     ///
     /// # Errors
-    /// As [`Stage::new`].
-    pub fn view_at(weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<View, StageError> {
+    /// As [`FrameScene::new`].
+    pub fn view_at(weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<View, FrameSceneError> {
         let Some(seen) = CameraView::of(weather, loaded, &posed(loaded, time_s), time_s) else {
             return Ok(Self::new(weather, loaded, time_s)?.view()?);
         };
@@ -240,11 +241,16 @@ impl Stage {
         Ok(view_of(&viewpoint, origin, weather.size, depth, weather.camera.shutter, &motion)?)
     }
 
-    /// [`Stage::view_at`] for a scene that stands still, whose camera may be that of its model: only the field of view changes then.
+    /// [`FrameScene::view_at`] for a scene that stands still, whose camera may be that of its model: only the field of view changes then.
     ///
     /// # Errors
-    /// As [`Stage::view_at`].
-    pub fn seen_view_at(&self, weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<View, StageError> {
+    /// As [`FrameScene::view_at`].
+    pub fn seen_view_at(
+        &self,
+        weather: &Weather,
+        loaded: &Loaded,
+        time_s: f64,
+    ) -> Result<View, FrameSceneError> {
         if weather.camera.path.is_some() {
             return Self::view_at(weather, loaded, time_s);
         }
@@ -269,7 +275,7 @@ impl Stage {
     /// before darkness are many, and not what a picture is exposed for.
     #[must_use]
     pub fn exposure(&self, clean: &[[f32; 4]]) -> f32 {
-        let luminance = |&[r, g, b, _]: &[f32; 4]| tone_luminance(Vec3::new(r, g, b));
+        let luminance = |&[r, g, b, _]: &[f32; 4]| color_luminance([r, g, b]);
         // The disk of the sun, a million times brighter than all else, is not to make that dark.
         let most = GRAY / tone_automatic_exposure(clean) * BRIGHTEST;
         let (sum, count) = clean
@@ -389,14 +395,14 @@ fn posed(loaded: &Loaded, time_s: f64) -> Pose {
 }
 
 /// Refuses what would take the machine away.
-fn check_cost(loaded: &Loaded, pose: &Pose) -> Result<(), StageError> {
+fn check_cost(loaded: &Loaded, pose: &Pose) -> Result<(), FrameSceneError> {
     let of = |mesh: usize| -> u64 {
         let parts = loaded.scene.meshes.get(mesh).map_or(&[][..], |mesh| &mesh.primitives);
         parts.iter().map(|part| part.indices.len() as u64 / 3).sum()
     };
     let triangles: u64 = pose.instances.iter().map(|instance| of(instance.mesh)).sum();
     if triangles > MAX_TRIANGLES {
-        return Err(StageError::OverLimit {
+        return Err(FrameSceneError::OverLimit {
             quantity: "triangles of the scene, all copies counted",
             found: triangles,
             max: MAX_TRIANGLES,
@@ -404,7 +410,7 @@ fn check_cost(loaded: &Loaded, pose: &Pose) -> Result<(), StageError> {
         });
     }
     if pose.lights.len() > MAX_LIGHTS {
-        return Err(StageError::OverLimit {
+        return Err(FrameSceneError::OverLimit {
             quantity: "lamps of the scene, all copies counted",
             found: pose.lights.len() as u64,
             max: MAX_LIGHTS as u64,
@@ -416,7 +422,7 @@ fn check_cost(loaded: &Loaded, pose: &Pose) -> Result<(), StageError> {
     if usize::try_from(bytes).is_ok_and(|bytes| room.try_reserve_exact(bytes).is_ok()) {
         return Ok(());
     }
-    Err(StageError::Memory { mebibytes: bytes >> 20 })
+    Err(FrameSceneError::Memory { mebibytes: bytes >> 20 })
 }
 
 /// The middle of all that there is.

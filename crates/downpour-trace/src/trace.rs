@@ -5,7 +5,8 @@
 //! sky and surfaces.
 
 use downpour_math::packing::{
-    packing_octahedral_decode, packing_octahedral_encode, packing_pack_snorm, packing_unpack_snorm,
+    packing_octahedral_decode, packing_octahedral_encode, packing_pack_half, packing_pack_snorm,
+    packing_unpack_half, packing_unpack_snorm,
 };
 use downpour_shaders::render::scene::{
     SCENE_FAR, SCENE_OCTAHEDRAL, SCENE_PICTURE, SKYLIGHT_FILM, TRACE_SAME_NORMAL,
@@ -17,7 +18,6 @@ use crate::capture::{capture_direction, capture_sky, capture_suns};
 use crate::data::RenderFrame;
 use crate::path::{PathSlot, ViewPath, path_lattice_words, path_max};
 use crate::scene::SceneView;
-use downpour_render::halves::{pack, unpack};
 
 /// Light that is denoised over neighboring pixels, packed. The same layout as `TraceSlot` in WGSL.
 #[repr(C)]
@@ -67,7 +67,7 @@ fn trace_pack(slot: &PathSlot, eye: Vec3) -> TraceSlot {
         normal: packing_pack_snorm(packing_octahedral_encode(slot.normal.to_array())),
         light: sum,
         look: part(slot.light.x) | part(slot.light.y) << 12 | rough << 24,
-        factor: [pack([factor.x, factor.y]), pack([factor.z, slack])],
+        factor: [packing_pack_half([factor.x, factor.y]), packing_pack_half([factor.z, slack])],
     }
 }
 
@@ -75,7 +75,7 @@ fn trace_pack(slot: &PathSlot, eye: Vec3) -> TraceSlot {
 pub(crate) fn trace_unpack(slot: &TraceSlot, eye: Vec3) -> PathSlot {
     let red = (slot.look & 4095) as f32 * (slot.light / 4095.0);
     let green = (slot.look >> 12 & 4095) as f32 * (slot.light / 4095.0);
-    let [low, high] = slot.factor.map(unpack);
+    let [low, high] = slot.factor.map(packing_unpack_half);
     let position = Vec3::from(slot.position);
     let from_eye = position - eye;
     PathSlot {

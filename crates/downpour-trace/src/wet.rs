@@ -28,7 +28,7 @@ use downpour_shaders::render::puddle_water::PUDDLE_WATER_NORMAL;
 use downpour_shaders::render::scene::{SCENE_BLENDED, SCENE_LIGHT_ROWS, SCENE_UNLIT};
 use downpour_shaders::render::wet::{
     WET_COARSER, WET_COAT_COSINES, WET_COAT_ROWS, WET_COAT_STEPS, WET_DIELECTRIC, WET_DIMENSION, WET_EDGE,
-    WET_FINE, WET_GRAINS, WET_HEAD_ROWS, WET_LEAST, WET_METAL, WET_OCTAVES, WET_PATCH, WET_PORES,
+    WET_FINE, WET_GRAINS, WET_HEAD_ROWS, WET_METAL, WET_MIN, WET_OCTAVES, WET_PATCH, WET_PORES,
     WET_POROUS_ALPHA, WET_SMOOTH_ALPHA, WET_SMOOTH_STORAGE, WET_SPREAD, WET_SQUARE, WET_STEEP,
 };
 use downpour_weather::{Rain, Weather, WetnessAt};
@@ -318,7 +318,7 @@ impl SceneView<'_> {
         }
         let storage = WET_SMOOTH_STORAGE + (1.0 - WET_SMOOTH_STORAGE) * surface.porosity;
         let wetness = wet_fraction(wet.before, wet.kept, wet.since, flux / storage);
-        if wetness < WET_LEAST {
+        if wetness < WET_MIN {
             return 0.0;
         }
         let nearest = self.frame.nearest;

@@ -8,7 +8,7 @@ use crate::puddle::{
     FillLimits, Filling, Ground, PuddleError, PuddleGround, PuddleLook, PuddleMap, PuddleRows, Relief,
     Ripples,
 };
-use crate::stage::Stage;
+use crate::stage::FrameScene;
 
 /// Mixed into the rain's seed, so that drops on water are not the drops in the air.
 const SEED: u64 = 0x7075_6464_6c65_0001;
@@ -49,7 +49,7 @@ impl WetGround {
     pub fn new(
         weather: &Weather,
         loaded: &Loaded,
-        stage: &Stage,
+        stage: &FrameScene,
         first_s: f64,
     ) -> Result<Option<Self>, PuddleError> {
         if weather.puddles.is_empty() {
@@ -114,7 +114,7 @@ impl WetGround {
     }
 
     /// Sets the puddles of a stage to the present state of the water.
-    pub fn lay(&self, stage: &mut Stage) {
+    pub fn lay(&self, stage: &mut FrameScene) {
         stage.data.set_puddles(&PuddleRows {
             puddles: &self.puddles,
             shape: self.ripples.shape(),
@@ -130,7 +130,7 @@ impl WetGround {
 }
 
 /// The rectangle of a puddle.
-fn ground(puddle: &Puddle, stage: &Stage) -> Ground {
+fn ground(puddle: &Puddle, stage: &FrameScene) -> Ground {
     Ground {
         middle: (DVec3::from(puddle.middle) - stage.origin).as_vec3(),
         size: Vec2::from(puddle.size.map(|edge| edge as f32)),

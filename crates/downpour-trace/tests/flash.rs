@@ -6,7 +6,7 @@ use downpour_scene::scene::{Light, LightKind, Local, Material, Mesh, Node, Primi
 use downpour_scene::sky::{SkyMap, Sun};
 use downpour_trace::data::RenderFrame;
 use downpour_trace::scene::SceneView;
-use downpour_trace::stage::Stage;
+use downpour_trace::stage::FrameScene;
 use downpour_weather::{FlashLight, Loaded, Weather};
 use glam::{Affine3A, Vec2, Vec3};
 
@@ -83,7 +83,7 @@ fn from_above(
 ) -> Result<Vec<f32>, Box<dyn std::error::Error>> {
     let mut weather = Weather::default();
     weather.wetness.is_enabled = false;
-    let stage = Stage::new(&weather, &scene(poles), 0.0)?.in_flash(&weather, 0.0, &[*flash]);
+    let stage = FrameScene::new(&weather, &scene(poles), 0.0)?.in_flash(&weather, 0.0, &[*flash]);
     // A narrow view from far away is all but parallel.
     let fov_y = 2.0 * downpour_math::ops::atan(6.0 / 600.0);
     let view = Viewpoint { eye: middle + Vec3::Y * 600.0, forward: Vec3::NEG_Y, up: Vec3::NEG_Z, fov_y };

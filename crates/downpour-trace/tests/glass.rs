@@ -15,7 +15,7 @@ use downpour_trace::material::MaterialLook;
 use downpour_trace::pane_shadow::{is_lit_through, set_pane};
 use downpour_trace::scene::SceneView;
 use downpour_trace::sky_light::SkyLight;
-use downpour_trace::stage::Stage;
+use downpour_trace::stage::FrameScene;
 use downpour_weather::{Loaded, Weather};
 use glam::{Affine3A, Vec2, Vec3};
 
@@ -25,7 +25,7 @@ const SIZE: [u32; 2] = [96, 64];
 const CAPTURE: usize = (4 * 64 * 64 - 1) / 3;
 
 /// A stage under an even sky, looking along -z.
-fn stage(glass: &str) -> Result<(Weather, Stage), Box<dyn std::error::Error>> {
+fn stage(glass: &str) -> Result<(Weather, FrameScene), Box<dyn std::error::Error>> {
     let text = format!(
         "[rain]\nrate_mm_h = 100\n[camera]\nposition_m = [0, 1.5, 0]\nfov_deg = 14\n[output]\nsize = [96, 64]\n[glass]\n{glass}"
     );
@@ -41,7 +41,7 @@ fn stage(glass: &str) -> Result<(Weather, Stage), Box<dyn std::error::Error>> {
         drop_model: None,
         warnings: Vec::new(),
     };
-    let stage = Stage::new(&weather, &loaded, 0.0)?;
+    let stage = FrameScene::new(&weather, &loaded, 0.0)?;
     Ok((weather, stage))
 }
 
@@ -340,7 +340,7 @@ fn a_pane_that_is_not_before_the_eye_is_refused() -> Outcome {
         drop_model: None,
         warnings: Vec::new(),
     };
-    let down = Stage::new(&looks_down, &loaded, 0.0)?;
+    let down = FrameScene::new(&looks_down, &loaded, 0.0)?;
     let error = WetPane::new(&weather, &down.viewpoint, 0.0).err().ok_or("a pane from outside")?;
     assert!(error.to_string().starts_with("glass: a pane tilted by 20.0 degrees"), "{error}");
     Ok(())

@@ -18,3 +18,8 @@ pub mod script;
 pub mod theme;
 pub mod window;
 pub mod wire;
+
+/// The examples of the README, as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

@@ -155,7 +155,7 @@ impl Lightning {
         let shines = |of: &StrokeOf| of.pulse.begin_s <= to_s && of.pulse.end_s() > from_s;
         let mut found: Vec<StrokeOf> = self.strokes.iter().copied().filter(shines).collect();
         if let Some(storm) = &self.storm {
-            let first_s = from_s - storm::LONGEST_S;
+            let first_s = from_s - storm::MAX_LIT_S;
             let drawn = if self.is_limited {
                 limit::limited_storm(storm, &self.strokes, first_s, to_s)
             } else {

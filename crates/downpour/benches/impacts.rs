@@ -6,7 +6,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use downpour::Source;
 use downpour::scene::Budget;
 use downpour::shower::Shower;
-use downpour::trace::stage::Stage;
+use downpour::trace::stage::FrameScene;
 
 fn impacts(c: &mut Criterion) {
     for name in ["day", "storm"] {
@@ -16,7 +16,7 @@ fn impacts(c: &mut Criterion) {
         let path = if path.exists() { path } else { format!("assets/scenes/street/{name}.toml").into() };
         let mut source = Source::read(&path, &[], &mut Budget::default()).expect("a weather");
         source.weather.size = [1920, 1080];
-        let stage = Stage::new(&source.weather, &source.loaded, 0.0).expect("a stage");
+        let stage = FrameScene::new(&source.weather, &source.loaded, 0.0).expect("a stage");
         let mut group = c.benchmark_group(format!("impacts {name}"));
         group.sample_size(10);
         let mut time_s = 0.0;

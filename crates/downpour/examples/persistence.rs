@@ -28,7 +28,7 @@ use downpour::sim::field::{DropKind, FallingDrop};
 use downpour::trace::data::RenderFrame;
 use downpour::trace::gpu::{SceneOnGpu, ScenePipeline};
 use downpour::trace::scene::SceneView;
-use downpour::trace::stage::Stage;
+use downpour::trace::stage::FrameScene;
 use downpour::weather::{Roots, Weather, load};
 
 /// Seconds.
@@ -44,7 +44,7 @@ const NEAR: [f32; 2] = [0.2, 1.0];
 /// Setup that all pictures share.
 struct Bench<'a> {
     gpu: &'a Gpu,
-    stage: &'a Stage,
+    stage: &'a FrameScene,
     frame: downpour::trace::data::RenderFrame,
     masks: [DropMasks; 2],
     scenes: ScenePipeline,
@@ -76,7 +76,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut budget = Budget::default();
     let weather = Weather::read(path, &mut budget)?;
     let loaded = load(&weather, &Roots::open(path, &[])?, &mut budget)?;
-    let stage = Stage::new(&weather, &loaded, 0.0)?;
+    let stage = FrameScene::new(&weather, &loaded, 0.0)?;
     let gpu = Gpu::open(&AdapterChoice::Auto)?;
     let size = if quick { [320, 240] } else { [1024, 768] };
     println!("adapter: {}; {} x {}, shutter 1/60 s", gpu.adapter().name, size[0], size[1]);

@@ -20,7 +20,7 @@ use downpour::scene::Budget;
 use downpour::sim::field::{DropKind, FallingDrop};
 use downpour::trace::gpu::ScenePipeline;
 use downpour::trace::scene::SceneView;
-use downpour::trace::stage::Stage;
+use downpour::trace::stage::FrameScene;
 use downpour::weather::{Roots, Weather, load};
 
 /// Metres.
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut budget = Budget::default();
     let weather = Weather::read(path, &mut budget)?;
     let loaded = load(&weather, &Roots::open(path, &[])?, &mut budget)?;
-    let stage = Stage::new(&weather, &loaded, 0.0)?;
+    let stage = FrameScene::new(&weather, &loaded, 0.0)?;
 
     let gpu = Gpu::open(&AdapterChoice::Auto)?;
     println!("adapter: {}", gpu.adapter().name);
@@ -91,7 +91,7 @@ fn ms(time: std::time::Duration) -> f64 {
 }
 
 /// A drop somewhere in the picture, uniform in space.
-fn drop(stage: &Stage, index: u32, diameter: f32) -> FallingDrop {
+fn drop(stage: &FrameScene, index: u32, diameter: f32) -> FallingDrop {
     let [a, b, c, _] = rng_draw([2006, 0], index, 0, 0).map(rng_unit);
     let view = &stage.viewpoint;
     let forward = view.forward.normalize();

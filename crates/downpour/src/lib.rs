@@ -34,6 +34,7 @@
 //! | [`render`] | `downpour-render` | rain on a plate: drops, streaks, their light, panes of glass, tone |
 //! | [`trace`] | `downpour-trace` | scenes by rays, which make plates; puddles |
 //! | [`specimen`] | `downpour-specimen` | one exact drop in front of a sky map |
+//! | [`street`] | `downpour-street` | an old street from a seed, as glTF |
 //! | `gpu` (feature `wgpu`) | `downpour-gpu` | a checked layer over wgpu, on a device of its own or on yours |
 //! | [`shaders`] | `downpour-shaders` | every WGSL file as composable modules |
 //! | [`math`] | `downpour-math` | reproducible scalar functions and random numbers |
@@ -57,6 +58,7 @@
 //! Units are SI (metres, seconds, kilograms, radians); a name says so where it is something else (`rate_mm_h`,
 //! `temperature_c`). Axes are those of glTF: right-handed, +Y up.
 
+pub mod output_file;
 #[cfg(feature = "wgpu")]
 pub mod rain;
 mod renderer;

@@ -31,12 +31,12 @@ use downpour_trace::capture::trace_environment;
 use downpour_trace::data::RenderFrame;
 use downpour_trace::pane_shadow::{is_lit_through, set_pane};
 use downpour_trace::scene::SceneView;
-use downpour_trace::stage::{LATEST_S, Stage};
+use downpour_trace::stage::{FrameScene, LATEST_S};
 use downpour_trace::wet_ground::WetGround;
 use downpour_weather::{CameraPath, Loaded, StreakLook, Weather};
 
 pub use computer::{Backend, Computer, Device};
-use computer::{Drawer, Painted, Through};
+use computer::{Drawer, Painted, PaneView};
 pub use display::{DisplayFrame, PendingDisplay};
 use drops::Drops;
 pub use error::RendererError;
@@ -103,7 +103,7 @@ pub struct Renderer {
     loaded: Loaded,
     options: RendererOptions,
     /// The scene at the first time.
-    first: Stage,
+    first: FrameScene,
     masks: Arc<DropMasks>,
     /// The streak atlas that was given, also where the weather takes no streaks from it.
     atlas: Option<StreakAtlas>,
@@ -125,7 +125,7 @@ struct Water {
 
 impl Water {
     /// Puts the water on the ground of a stage, and what the pane does to light that falls through it.
-    fn lay(&self, stage: &mut Stage) -> Result<(), RendererError> {
+    fn lay(&self, stage: &mut FrameScene) -> Result<(), RendererError> {
         if let Some(ground) = &self.ground {
             ground.lay(stage);
         }
@@ -161,14 +161,14 @@ impl Renderer {
         check_size(weather.size)?;
         let atlas = options.atlas.take();
         options.atlas = atlas_of(&weather, atlas.clone())?;
-        let first = Stage::new(&weather, &loaded, options.first_s)?;
+        let first = FrameScene::new(&weather, &loaded, options.first_s)?;
         let mut shower = Shower::new(&weather)?;
         let masks = set_weather::masks(&weather, &loaded, &shower, &options)?;
         if !loaded.is_animated() {
             // The files have become buffers.
             loaded.scene = Scene::default();
         } else if shower.has_drips() {
-            shower.find_drips(&Stage::new(&weather, &loaded, 0.0)?)?;
+            shower.find_drips(&FrameScene::new(&weather, &loaded, 0.0)?)?;
         }
         let drawer = Drawer::new(device)?;
         Ok(Self {
@@ -206,7 +206,7 @@ impl Renderer {
 
     /// The scene at the first time.
     #[must_use]
-    pub fn first_stage(&self) -> &Stage {
+    pub fn first_stage(&self) -> &FrameScene {
         &self.first
     }
 
@@ -220,7 +220,7 @@ impl Renderer {
     /// step by step know how it moves. Rain that goes step by step, and what holds water, begin anew.
     ///
     /// # Errors
-    /// [`RendererError::Stage`] for an eye over 1 km from where the first one was.
+    /// [`RendererError::FrameScene`] for an eye over 1 km from where the first one was.
     pub fn set_camera(&mut self, path: impl Into<CameraPath>) -> Result<(), RendererError> {
         let before = self.weather.camera.path.replace(path.into());
         match self.first.seen_at(&self.weather, &self.loaded, self.options.first_s) {
@@ -354,7 +354,7 @@ impl Renderer {
     }
 
     /// The scene at a time. A copy costs little: what does not change is shared.
-    fn stage(&self, time_s: f64) -> Result<Stage, RendererError> {
+    fn stage(&self, time_s: f64) -> Result<FrameScene, RendererError> {
         check_time(time_s)?;
         if time_s.to_bits() == self.options.first_s.to_bits() {
             return Ok(self.first.clone());
@@ -387,7 +387,7 @@ impl Renderer {
     }
 
     /// The scene at a time with the water on its ground, and with what a pane does to the light that falls through it.
-    fn wet(&mut self, time_s: f64, told: &mut dyn FnMut(Progress)) -> Result<Stage, RendererError> {
+    fn wet(&mut self, time_s: f64, told: &mut dyn FnMut(Progress)) -> Result<FrameScene, RendererError> {
         let mut stage = self.stage(time_s)?;
         if self.weather.puddles.is_empty() && self.weather.glass.is_none() {
             return Ok(stage);
@@ -407,7 +407,7 @@ impl Renderer {
     /// The drops of a time, or what the device is asked for that finds them.
     fn drops(
         &mut self,
-        stage: &Stage,
+        stage: &FrameScene,
         time_s: f64,
         told: &mut dyn FnMut(Progress),
     ) -> Result<Drops, RendererError> {
@@ -421,7 +421,7 @@ impl Renderer {
         Ok(Drops::Listed(self.shower.at(&*scenery, stage, time_s, &mut passed)?))
     }
 
-    fn picture_options(&self, stage: &Stage, time_s: f64, medium: RainMedium) -> PictureOptions {
+    fn picture_options(&self, stage: &FrameScene, time_s: f64, medium: RainMedium) -> PictureOptions {
         let form = self.refraction();
         PictureOptions {
             size: stage.size,
@@ -449,7 +449,7 @@ impl Renderer {
     /// Draws a frame, seen through the pane if there is one, and waits for it if asked to. The plate is kept for so many frames of rays.
     fn draw(
         &self,
-        stage: &Stage,
+        stage: &FrameScene,
         drops: &Drops,
         options: &PictureOptions,
         kept_frames: u32,
@@ -466,7 +466,7 @@ impl Renderer {
 }
 
 /// The scene over time: still, before an eye that moves, or moving itself.
-fn scenery<'a>(first: &'a Stage, weather: &'a Weather, loaded: &'a Loaded) -> Box<dyn Scenery + 'a> {
+fn scenery<'a>(first: &'a FrameScene, weather: &'a Weather, loaded: &'a Loaded) -> Box<dyn Scenery + 'a> {
     if loaded.is_animated() {
         return Box::new(MovingScenery { weather, loaded });
     }
@@ -517,7 +517,7 @@ fn rain_on(pane: &mut WetPane, time_s: f64, told: &mut dyn FnMut(Progress)) -> R
 }
 
 /// The pane that a picture is seen through.
-fn through(pane: &WetPane, stage: &Stage, options: &PictureOptions) -> Result<Through, RendererError> {
+fn through(pane: &WetPane, stage: &FrameScene, options: &PictureOptions) -> Result<PaneView, RendererError> {
     let PictureOptions { size, grid, sky_rays, seed, .. } = *options;
     let frame = RenderFrame::new(&stage.data, &stage.viewpoint, size, grid, sky_rays, seed)?;
     let camera = frame.camera;
@@ -539,5 +539,5 @@ fn through(pane: &WetPane, stage: &Stage, options: &PictureOptions) -> Result<Th
         texels,
         options.rain.exposure.shutter_s,
     )?;
-    Ok(Through { glass, environment, glow: options.glow, camera })
+    Ok(PaneView { glass, environment, glow: options.glow, camera })
 }

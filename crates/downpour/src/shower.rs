@@ -22,7 +22,7 @@ use glam::DVec3;
 
 use downpour_render::glass::pane_plane;
 use downpour_render::rain::{DropMasks, MediumOptions, PanePlane, RainMedium};
-use downpour_trace::stage::Stage;
+use downpour_trace::stage::FrameScene;
 use dripping::Dripping;
 pub use error::ShowerError;
 pub use scenery::{MovingEye, MovingScenery, Scenery, Still};
@@ -96,7 +96,7 @@ impl Shower {
     ///
     /// # Errors
     /// [`ShowerError::Sim`] for more than [`MAX_POINTS`](downpour_sim::drips::MAX_POINTS) drip points.
-    pub fn find_drips(&mut self, stage: &Stage) -> Result<(), ShowerError> {
+    pub fn find_drips(&mut self, stage: &FrameScene) -> Result<(), ShowerError> {
         self.dripping.as_ref().map_or(Ok(()), |dripping| dripping.find(stage))
     }
 
@@ -122,7 +122,7 @@ impl Shower {
     /// Drops that drip, as a picture shows them.
     fn drips(
         &self,
-        stage: &Stage,
+        stage: &FrameScene,
         view: &View,
         least: f64,
         time_s: f64,
@@ -163,11 +163,11 @@ impl Shower {
     ///
     /// # Errors
     /// As [`RainField::visible`] and [`Simulation::advance`](downpour_sim::simulation::Simulation::advance);
-    /// [`ShowerError::Wind`] for a wind field that is none; [`ShowerError::Stage`].
+    /// [`ShowerError::Wind`] for a wind field that is none; [`ShowerError::FrameScene`].
     pub fn at(
         &mut self,
         scenery: &dyn Scenery,
-        stage: &Stage,
+        stage: &FrameScene,
         time_s: f64,
         passed: &mut dyn FnMut(u32, u32),
     ) -> Result<VisibleDrops, ShowerError> {
@@ -202,7 +202,7 @@ impl Shower {
     /// As [`Shower::at`].
     pub fn view_at(
         &self,
-        stage: &Stage,
+        stage: &FrameScene,
         time_s: f64,
         max_room: u32,
     ) -> Result<Option<ShowerView>, ShowerError> {
@@ -253,7 +253,7 @@ impl Shower {
     /// As [`Shower::at`].
     pub fn medium(
         &self,
-        stage: &Stage,
+        stage: &FrameScene,
         resolved: &Resolved,
         masks: &DropMasks,
         time_s: f64,
@@ -283,7 +283,7 @@ impl Shower {
     ///
     /// # Errors
     /// As [`Shower::at`].
-    pub fn measured_rate_mm_h(&self, stage: &Stage, time_s: f64) -> Result<f64, ShowerError> {
+    pub fn measured_rate_mm_h(&self, stage: &FrameScene, time_s: f64) -> Result<f64, ShowerError> {
         match &self.form {
             Form::Closed(field) => Ok(field.measured_rate_mm_h(stage.view()?.eye, time_s)?),
             Form::Stepped(stepped) => Ok(stepped.measured_rate_mm_h()),
@@ -292,7 +292,7 @@ impl Shower {
 }
 
 /// What stops drops in a scene.
-fn obstacles(stage: &Stage) -> Obstacles<'_> {
+fn obstacles(stage: &FrameScene) -> Obstacles<'_> {
     Obstacles {
         nodes: &stage.data.nodes,
         triangles: &stage.data.triangles,

@@ -3,9 +3,9 @@
 #![cfg(feature = "wgpu")]
 
 use downpour::gpu::{AdapterChoice, Gpu, GpuOptions, LimitSet, wgpu};
+use downpour::math::packing::packing_unpack_half;
 use downpour::rain::{DepthRange, PlateTextures, Rain, RainError, RainSettings, RainView};
 use downpour::render::camera::{EyeMotion, Viewpoint};
-use downpour::render::halves::unpack;
 use downpour::render::light::LightSource;
 use glam::Vec3;
 
@@ -152,7 +152,7 @@ impl Host {
             .flat_map(|line| line[..width as usize * 4].chunks(4))
             .map(|pixel| {
                 let [[r, g], [b, a]] =
-                    [0, 2].map(|k| unpack(u32::from(pixel[k]) | u32::from(pixel[k + 1]) << 16));
+                    [0, 2].map(|k| packing_unpack_half(u32::from(pixel[k]) | u32::from(pixel[k + 1]) << 16));
                 [r, g, b, a]
             })
             .collect()

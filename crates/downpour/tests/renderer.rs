@@ -96,6 +96,97 @@ fn a_weather_file_becomes_a_picture() {
     assert!(matches!(error, RendererError::Write { .. }), "{error}");
 }
 
+/// Names in a folder, sorted.
+fn names(folder: &std::path::Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+/// A clip that ends in the middle: frames that were begun and are dropped write nothing, and those that were saved are whole.
+#[test]
+fn a_clip_that_is_dropped_leaves_nothing_half_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let begin = || {
+        let mut renderer = opened(OPEN);
+        let frames = [0.0, 0.04, 0.08].map(|time_s| renderer.begin_frame(time_s).unwrap());
+        (renderer, frames)
+    };
+    let (renderer, [first, second, third]) = begin();
+    drop(second);
+    drop(renderer);
+    drop((first, third));
+    assert!(names(folder.path()).is_empty());
+
+    let (renderer, [first, second, third]) = begin();
+    drop(renderer);
+    let saved = first.finish().unwrap();
+    let path = folder.path().join("0000.png");
+    saved.save(&path).unwrap();
+    drop((second, third));
+    assert_eq!(names(folder.path()), ["0000.png"]);
+    assert_eq!(std::fs::read(&path).unwrap(), saved.png().unwrap());
+}
+
+/// A frame is written beside its name and renamed: whoever reads the old file reads all of it, and a name that cannot be had costs nothing.
+#[test]
+fn a_file_is_replaced_whole() {
+    let frame = opened(OPEN).frame(0.0).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.png");
+    std::fs::write(&path, "of before").unwrap();
+    let mut reader = std::fs::File::open(&path).unwrap();
+    frame.save(&path).unwrap();
+    let mut read = String::new();
+    std::io::Read::read_to_string(&mut reader, &mut read).unwrap();
+    assert_eq!(read, "of before");
+    assert_eq!(std::fs::read(&path).unwrap(), frame.png().unwrap());
+    std::fs::create_dir(folder.path().join("folder.png")).unwrap();
+    let error = frame.save(folder.path().join("folder.png")).unwrap_err();
+    assert!(matches!(error, RendererError::Write { .. }), "{error}");
+    #[cfg(unix)]
+    {
+        let link = folder.path().join("link.png");
+        std::os::unix::fs::symlink(&path, &link).unwrap();
+        std::fs::write(&path, "of before").unwrap();
+        frame.save(&link).unwrap();
+        assert!(std::fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(std::fs::read(&path).unwrap(), frame.png().unwrap());
+        std::fs::remove_file(&link).unwrap();
+    }
+    assert_eq!(names(folder.path()), ["a.png", "folder.png"]);
+}
+
+/// A device that is lost between frames, or while a frame is on it.
+#[cfg(feature = "wgpu")]
+#[test]
+fn a_lost_device_is_an_error() {
+    use downpour::gpu::{AdapterChoice, Gpu};
+    if std::env::var("DOWNPOUR_GPU_TESTS").is_ok_and(|value| value == "no") {
+        return;
+    }
+    let (_folder, path) = file(OPEN);
+    let gpu = Gpu::open(&AdapterChoice::Auto).unwrap();
+    let source = Source::read(&path, &[], &mut Budget::default()).unwrap();
+    // A device that is lost is not one for which the frame is too much: the CPU does not go on.
+    let device = Device::gpu(gpu.clone(), true);
+    let mut renderer =
+        Renderer::new(source.weather, source.loaded, RendererOptions::default(), device).unwrap();
+    renderer.frame(0.0).unwrap();
+    let pending = renderer.begin_frame(0.04).unwrap();
+    gpu.device().destroy();
+    let lost = |error: &RendererError| {
+        assert!(error.gpu().is_some() && !error.is_too_much_for_gpu(), "{error:?}");
+    };
+    // The frame that was on its way may be done already.
+    let _ = pending.finish().map_err(|error| lost(&error));
+    for time_s in [0.08, 0.12] {
+        lost(&renderer.frame(time_s).map(|_| ()).unwrap_err());
+    }
+    lost(&renderer.begin_display(0.2).map(|_| ()).unwrap_err());
+}
+
 /// The picture of a time is the same whatever was asked before, with water that holds what it was rained on too.
 #[test]
 fn frames_do_not_depend_on_those_before() {

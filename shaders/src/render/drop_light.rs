@@ -2,9 +2,9 @@
 //! `downpour_render::rain::{glint, light}`.
 
 use super::scene::SCENE;
-use super::specimen::SPECIMEN_TABLES;
 use super::table::LIGHT;
 use crate::atlas::{ATLAS, ATLAS_CONSTANTS};
+use crate::common::OCTANT;
 use crate::{Kernel, Module};
 
 /// Every module of this file.
@@ -88,7 +88,7 @@ shared_constants! {
 pub static DROP_GLINT: Module = Module {
     path: "render/drop_glint.wgsl",
     wgsl: include_str!("../../wgsl/render/drop_glint.wgsl"),
-    uses: &[&DROP_LIGHT_CONSTANTS, &SPECIMEN_TABLES],
+    uses: &[&DROP_LIGHT_CONSTANTS, &OCTANT],
 };
 
 /// Scattering of light by drops. Host: `downpour_render::rain::light::DropLightTable`.

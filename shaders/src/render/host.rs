@@ -2,7 +2,7 @@
 
 use super::camera::CAMERA;
 use super::scene::SCENE_CONSTANTS;
-use crate::common::PACKING;
+use crate::common::{EQUIRECT, PACKING};
 use crate::{Kernel, Module};
 
 /// Every module of this file.
@@ -52,7 +52,7 @@ pub static HOST_PLATE: Module = Module {
 pub static HOST_ENVIRONMENT: Module = Module {
     path: "render/host_environment.wgsl",
     wgsl: include_str!("../../wgsl/render/host_environment.wgsl"),
-    uses: &[&HOST_CONSTANTS, &PACKING, &CAMERA, &HOST_RADIANCE],
+    uses: &[&HOST_CONSTANTS, &EQUIRECT, &PACKING, &CAMERA, &HOST_RADIANCE],
 };
 
 /// Rain over a color texture: a vertex and a fragment shader.

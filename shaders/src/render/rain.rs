@@ -150,7 +150,7 @@ shared_constants! {
         /// Inverse of the mean over a sphere's outline of the squared sine by which it bends light.
         DROPS_BENT: f32 = 3.8;
         /// No part of a splash shows more of a lamp's light than so many times the mean.
-        DROPS_BENT_MOST: f32 = 4.0;
+        DROPS_MAX_BENT: f32 = 4.0;
         /// Form of refraction: the direction of the refracted light is looked up.
         DROPS_DIRECTION: u32 = 0;
         /// Form of refraction: the position in the captured picture is shifted (Rousseau 2006).
@@ -272,9 +272,9 @@ shared_tables! {
         /// Rows for each turn of the mode (3,1).
         PROFILES_PER_TURN: [f32; 4] = [8.0, 12.0, 20.0, 24.0];
         /// The least of them, besides the first row.
-        PROFILES_LEAST: [f32; 4] = [3.0, 4.0, 6.0, 6.0];
+        PROFILES_MIN: [f32; 4] = [3.0, 4.0, 6.0, 6.0];
         /// The most of them.
-        PROFILES_MOST: [f32; 4] = [24.0, 48.0, 96.0, 128.0];
+        PROFILES_MAX: [f32; 4] = [24.0, 48.0, 96.0, 128.0];
         /// Columns of the profile for each of the rays'.
         PROFILES_FINE: [f32; 4] = [1.0, 2.0, 2.0, 4.0];
     }
@@ -309,7 +309,7 @@ pub static DROPS_MASK: Module = Module {
 pub static DROPS_SHADE: Module = Module {
     path: "render/drops_shade.wgsl",
     wgsl: include_str!("../../wgsl/render/drops_shade.wgsl"),
-    uses: &[&RAIN_CONSTANTS, &PACKING, &DROPS_FRAME, &DROPS_CAPTURE, &DROPS_MASK],
+    uses: &[&RAIN_CONSTANTS, &PACKING, &DROPS_FRAME, &DROPS_CAPTURE, &DROPS_MASK, &DROP_GLINT],
 };
 
 /// Part of the exposure in which a ray passes a drop that moves, and the position there. Twin:

@@ -11,7 +11,7 @@ use super::scatter::SCATTER;
 use super::table::{LIGHT, MATERIAL};
 use super::wet::WET;
 use crate::bvh::BVH;
-use crate::common::PACKING;
+use crate::common::{COLOR, EQUIRECT, PACKING};
 use crate::drop::optics::OPTICS;
 use crate::{Kernel, Module};
 
@@ -70,7 +70,7 @@ shared_constants! {
         /// Light kind: from a place of a surface that shines; never in the table.
         SCENE_LIGHT_AREA: u32 = 3;
         /// Largest half angle of a lamp's disk, radians: from within its sphere.
-        LIGHT_LARGEST_SPREAD: f32 = 1.5;
+        LIGHT_MAX_SPREAD: f32 = 1.5;
         /// Rays toward a lamp with a size that gives much.
         SCENE_LAMP_RAYS: u32 = 2;
         /// Fraction of a disk's area for each step of a reversed number: 2^-32.
@@ -166,8 +166,11 @@ pub static TEXTURE: Module = Module {
 };
 
 /// The light of the sky. Twin: `downpour_trace::sky`.
-pub static SKY: Module =
-    Module { path: "render/sky.wgsl", wgsl: include_str!("../../wgsl/render/sky.wgsl"), uses: &[&DATA] };
+pub static SKY: Module = Module {
+    path: "render/sky.wgsl",
+    wgsl: include_str!("../../wgsl/render/sky.wgsl"),
+    uses: &[&DATA, &EQUIRECT],
+};
 
 /// Surface that a ray finds. Twin: `downpour_trace::surface`.
 pub static SURFACE: Module = Module {
@@ -223,7 +226,7 @@ pub static TRACE_KERNEL: Kernel = Kernel { entry: "main_trace", module: &TRACE, 
 pub static SKYLIGHT: Module = Module {
     path: "render/skylight.wgsl",
     wgsl: include_str!("../../wgsl/render/skylight.wgsl"),
-    uses: &[&TRACE, &PACKING],
+    uses: &[&TRACE, &COLOR, &PACKING],
 };
 
 /// One invocation per pixel.

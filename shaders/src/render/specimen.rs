@@ -1,19 +1,13 @@
 //! `wgsl/render/specimen.wgsl` and its streak. Twin: `downpour_specimen`.
 
-use crate::common::RNG;
+use crate::common::{OCTANT, RNG};
 use crate::drop::{optics, oscillation, shape};
 use crate::mask;
 use crate::{Kernel, Module};
 
 /// Every module of this file.
-pub const MODULES: &[&Module] = &[
-    &SPECIMEN_CONSTANTS,
-    &SPECIMEN_TABLES,
-    &SPECIMEN,
-    &SPECIMEN_STREAK_CONSTANTS,
-    &SPECIMEN_WOBBLE,
-    &SPECIMEN_STREAK,
-];
+pub const MODULES: &[&Module] =
+    &[&SPECIMEN_CONSTANTS, &SPECIMEN, &SPECIMEN_STREAK_CONSTANTS, &SPECIMEN_WOBBLE, &SPECIMEN_STREAK];
 
 /// Every kernel of this file.
 pub const KERNELS: &[&Kernel] = &[&SPECIMEN_KERNEL, &SPECIMEN_STREAK_KERNEL];
@@ -44,30 +38,11 @@ shared_constants! {
     }
 }
 
-shared_tables! {
-    /// Tables of the specimen.
-    SPECIMEN_TABLES at "render/specimen tables" {
-        /// atan(t) / (2 pi t) as a polynomial of t^2, for t in [0, 1]: interpolation at Chebyshev's points, within
-        /// 1.6e-9 turns.
-        SPECIMEN_TURN: [f32; 9] = [
-            0.15915494, -0.053051176, 0.031818053, -0.022596497, 0.016899662, -0.011867953, 0.006706411,
-            -0.0025037061, 0.0004402677
-        ];
-    }
-}
-
 /// One drop in front of a sky. Twin: `downpour_specimen`.
 pub static SPECIMEN: Module = Module {
     path: "render/specimen.wgsl",
     wgsl: include_str!("../../wgsl/render/specimen.wgsl"),
-    uses: &[
-        &SPECIMEN_CONSTANTS,
-        &SPECIMEN_TABLES,
-        &mask::MASK_CONSTANTS,
-        &mask::TRACE,
-        &optics::OPTICS,
-        &RNG,
-    ],
+    uses: &[&SPECIMEN_CONSTANTS, &OCTANT, &mask::MASK_CONSTANTS, &mask::TRACE, &optics::OPTICS, &RNG],
 };
 
 /// One invocation per pixel of a band of rows.

@@ -1,6 +1,7 @@
 //! `wgsl/render/tone.wgsl`: tone curves, and the picture to look at. Twin: `downpour_render::tone`.
 
 use super::rain::COMPOSE;
+use crate::common::COLOR;
 use crate::{Kernel, Module};
 
 /// Every module of this file.
@@ -31,7 +32,7 @@ shared_constants! {
 pub static TONE: Module = Module {
     path: "render/tone.wgsl",
     wgsl: include_str!("../../wgsl/render/tone.wgsl"),
-    uses: &[&TONE_CONSTANTS, &COMPOSE],
+    uses: &[&TONE_CONSTANTS, &COLOR, &COMPOSE],
 };
 
 /// A picture to look at: one invocation per pixel.

@@ -50,7 +50,7 @@ shared_constants! {
         /// Footprint in which no relief is resolved, m.
         WET_FAR: f32 = 1000.0;
         /// Wetness below which a surface is dry.
-        WET_LEAST: f32 = 0.001;
+        WET_MIN: f32 = 0.001;
         /// Reflectances at normal incidence between which a surface goes from a dielectric to a metal.
         WET_DIELECTRIC: f32 = 0.1;
         /// See [`WET_DIELECTRIC`].

@@ -27,9 +27,9 @@ shared_constants! {
         /// Dimension of the random number of a crown's size.
         SPLASH_SIZE: u32 = 8204;
         /// Smallest size of a crown, relative to the law.
-        SPLASH_SMALLEST: f32 = 0.75;
+        SPLASH_MIN_SIZE: f32 = 0.75;
         /// Largest size of a crown, relative to the law.
-        SPLASH_LARGEST: f32 = 1.25;
+        SPLASH_MAX_SIZE: f32 = 1.25;
         /// Difference between the id of a drop and that of its splash: the lower half.
         SPLASH_LOW: u32 = 4089235721;
         /// The upper half.
@@ -37,7 +37,7 @@ shared_constants! {
         /// Least vertical component of the normal of a surface on which crowns stand.
         SPLASH_LEVEL: f32 = 0.8;
         /// Longest duration of a crown, s.
-        SPLASH_LONGEST: f32 = 0.055;
+        SPLASH_MAX_S: f32 = 0.055;
         /// Time around a hit in which the same hit is found again, s.
         SPLASH_AGAIN: f32 = 2.0e-5;
     }

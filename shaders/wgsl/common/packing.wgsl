@@ -28,3 +28,19 @@ fn packing_octahedral_decode(square: vec2f) -> vec3f {
     let inverse = 1.0 / sqrt(x * x + y * y + z * z);
     return vec3f(x * inverse, y * inverse, z * inverse);
 }
+
+// Texel of an octahedral map of `size` texels along an edge. Beyond an edge, the map continues mirrored about the edge's middle.
+fn packing_octahedral_texel(size: u32, column: i32, row: i32) -> vec2u {
+    let edge = i32(size);
+    var x = column;
+    var y = row;
+    if x < 0 || x >= edge {
+        x = clamp(x, 0, edge - 1);
+        y = edge - 1 - y;
+    }
+    if y < 0 || y >= edge {
+        y = clamp(y, 0, edge - 1);
+        x = edge - 1 - x;
+    }
+    return vec2u(vec2i(clamp(x, 0, edge - 1), clamp(y, 0, edge - 1)));
+}

@@ -19,17 +19,7 @@ fn drop_glint_angle(light: vec3f, towards: vec3f) -> f32 {
     let s = sqrt(dot(apart, apart));
     let c = sqrt(dot(along, along));
     let t = min(s, c) / max(max(s, c), DROP_GLINT_TINY);
-    let square = t * t;
-    var sum = SPECIMEN_TURN[8];
-    sum = sum * square + SPECIMEN_TURN[7];
-    sum = sum * square + SPECIMEN_TURN[6];
-    sum = sum * square + SPECIMEN_TURN[5];
-    sum = sum * square + SPECIMEN_TURN[4];
-    sum = sum * square + SPECIMEN_TURN[3];
-    sum = sum * square + SPECIMEN_TURN[2];
-    sum = sum * square + SPECIMEN_TURN[1];
-    sum = sum * square + SPECIMEN_TURN[0];
-    let octant = sum * t;
+    let octant = octant_turns(t);
     return 4.0 * select(octant, 0.25 - octant, c < s);
 }
 

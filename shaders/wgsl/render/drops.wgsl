@@ -6,7 +6,7 @@
 // Unresolved drops are a medium between them (medium.wgsl): it shows the mean radiance of a drop, and the light of lamps.
 // Twin: downpour_render::rain::drops.
 
-@group(0) @binding(3) var<storage, read> drops_list: array<DropsDrop>;
+@group(0) @binding(3) var<storage, read> drops_list: array<ScreenDrop>;
 // The lists of the tiles (tiles.wgsl).
 @group(0) @binding(4) var<storage, read> drops_tiles: array<u32>;
 @group(0) @binding(5) var<storage, read> drops_clean: array<vec4f>;
@@ -20,14 +20,14 @@ fn drops_on_plane(towards: vec3f, ray: vec3f) -> vec3f {
 
 // Light of lamps in the form of Rousseau 2006 at a position of a drop's mask, by the normal there, which halves the angle between the
 // eye and what is mirrored: what it is more than the mean over the drop.
-fn drops_facing(index: u32, drop: DropsDrop, x: f32, y: f32) -> vec3f {
+fn drops_facing(index: u32, drop: ScreenDrop, x: f32, y: f32) -> vec3f {
     let row = drops_glint_row(index);
     var light = vec3f(0.0);
     // An atlas has streaks, other forms have glints.
     if drops_frame.atlas > 0u || drops_frame.glints < 2u || drops_light[row + 1u].w >= 0.0 {
         return light;
     }
-    let right = drops_mask_right(drop.towards);
+    let right = drop_glint_right(drop.towards);
     let up = cross(right, drop.towards);
     let turned = drops_mask_unit(drops_mask_at(drop.mask_index, x, y).reflected + vec3f(0.0, 0.0, 1.0));
     let normal = right * turned.x + up * turned.y - drop.towards * turned.z;
@@ -43,12 +43,12 @@ fn drops_facing(index: u32, drop: DropsDrop, x: f32, y: f32) -> vec3f {
 }
 
 // The phase of the mode (2,0), in turns, where a passing drop is at a fraction of its way.
-fn drops_turns(drop: DropsDrop, way: f32) -> f32 {
+fn drops_turns(drop: ScreenDrop, way: f32) -> f32 {
     return drop.mode_phase.z + drop.cycles.x * streak_time(drop.depth_ratio, way);
 }
 
 // Light of lamps on a passing drop by the streaks of an atlas, for as long as it passes a position on the plane.
-fn drops_streaks(index: u32, drop: DropsDrop, chord: StreakChord, at: vec2f) -> vec3f {
+fn drops_streaks(index: u32, drop: ScreenDrop, chord: StreakChord, at: vec2f) -> vec3f {
     let row = drops_glint_row(index);
     let part = (chord.high - chord.low) * 0.5;
     let turns = drops_turns(drop, streak_nearest(drop, at));
@@ -65,14 +65,14 @@ fn drops_streaks(index: u32, drop: DropsDrop, chord: StreakChord, at: vec2f) -> 
 }
 
 // Light of lamps on a drop that is not sampled, as a radiance over all of it: with an atlas bright and dark along its path.
-fn drops_beads(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec3f {
+fn drops_beads(index: u32, drop: ScreenDrop, x: u32, y: u32) -> vec3f {
     let row = drops_glint_row(index);
     var light = drops_light[row].rgb;
     if drops_frame.atlas == 0u || drop.spread > 1.0 {
         return light;
     }
-    let square = max(dot(drop.way, drop.way), 1.0);
-    let at = dot(vec2f(f32(x), f32(y)) + 0.5 - drop.first, drop.way) / square;
+    let square = max(dot(drop.screen_delta, drop.screen_delta), 1.0);
+    let at = dot(vec2f(f32(x), f32(y)) + 0.5 - drop.first, drop.screen_delta) / square;
     let pixel = 1.0 / sqrt(square);
     for (var k = DROP_ATLAS_ROWS; k <= drops_frame.glints; k += DROP_ATLAS_ROWS) {
         let first = drops_light[row + k - 2u];
@@ -90,23 +90,23 @@ fn drops_beads(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec3f {
 }
 
 // True for a splash, whose masks are behind those of the diameters.
-fn drops_is_splash(drop: DropsDrop) -> bool {
+fn drops_is_splash(drop: ScreenDrop) -> bool {
     return drop.mask_index.x >= f32(PROJECT_DIAMETERS);
 }
 
 // The light of lamps on a part of a splash, over that of a sphere: what is bent as little as by a sheet of water stays where it is.
 fn drops_bent(direction: vec3f) -> f32 {
-    return min(dot(direction.xy, direction.xy) * DROPS_BENT, DROPS_BENT_MOST);
+    return min(dot(direction.xy, direction.xy) * DROPS_BENT, DROPS_MAX_BENT);
 }
 
 // A still drop over a pixel: radiance times coverage, and coverage. Below a pixel it is its mean radiance.
-fn drops_still(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
+fn drops_still(index: u32, drop: ScreenDrop, x: u32, y: u32) -> vec4f {
     let small = drop.grid == 0u;
     let spread = streak_cover(drop, x, y);
     if small && spread <= 0.0 {
         return vec4f(0.0);
     }
-    let right = drops_mask_right(drop.towards);
+    let right = drop_glint_right(drop.towards);
     let up = cross(right, drop.towards);
     let n = select(drop.grid, DROPS_SMALL_GRID, small);
     let extent = drop.half_extent * drop.slope;
@@ -153,7 +153,7 @@ fn drops_still(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
 
 // The part of a chord that passes during the exposure, by the weighted mean over its middle points: what a table keeps
 // beforehand, without weights.
-fn drops_chord(index: u32, drop: DropsDrop, chord: StreakChord, ray: vec3f) -> vec4f {
+fn drops_chord(index: u32, drop: ScreenDrop, chord: StreakChord, ray: vec3f) -> vec4f {
     let towards = drops_mask_unit(ray);
     let spacing = 2.0 * drop.oval.x / f32(STREAK_FINE);
     let shade = DropsShade(towards, drop.half_extent, vec3f(0.0), spacing, drop.mask_index);
@@ -177,7 +177,7 @@ fn drops_shift(line: u32) -> f32 {
 }
 
 // The streak of a drop over a pixel: radiance times coverage, and coverage.
-fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
+fn drops_streak(index: u32, drop: ScreenDrop, x: u32, y: u32) -> vec4f {
     let size = vec2f(f32(drops_frame.camera.width), f32(drops_frame.camera.height));
     if drop.grid == 0u {
         let cover = streak_cover(drop, x, y);
@@ -188,7 +188,7 @@ fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
         let mean = streak_lookup_mean(drop.shape, position) + drops_beads(index, drop, x, y);
         return vec4f(mean, 1.0) * cover;
     }
-    let right = drops_mask_right(drop.towards);
+    let right = drop_glint_right(drop.towards);
     let up = cross(right, drop.towards);
     let shift = vec2f(drops_shift(y), drops_shift(x));
     var sum = vec4f(0.0);
@@ -228,21 +228,21 @@ fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
 }
 
 // Position on the plane at distance 1 through a drop's center, along the right and up of its view, of a place on the picture.
-fn drops_position(drop: DropsDrop, x: f32, y: f32) -> vec2f {
-    let right = drops_mask_right(drop.towards);
+fn drops_position(drop: ScreenDrop, x: f32, y: f32) -> vec2f {
+    let right = drop_glint_right(drop.towards);
     let lean = drops_on_plane(drop.towards, camera_ray(drops_frame.camera, x, y));
     return vec2f(dot(lean, right), dot(lean, cross(right, drop.towards)));
 }
 
 // The part of a drop at a depth that is before a scene, 0 to 1: one that meets a surface goes into it over its own size; a splash
 // stands on one, which hides it only from behind.
-fn drops_before(drop: DropsDrop, scene: f32, depth: f32) -> f32 {
+fn drops_before(drop: ScreenDrop, scene: f32, depth: f32) -> f32 {
     let sunk = (scene - depth) / (2.0 * drop.slope * drop.distance);
     return clamp(sunk + select(0.5, 1.5, drops_is_splash(drop)), 0.0, 1.0);
 }
 
 // The depth of a drop before a pixel, m.
-fn drops_depth(drop: DropsDrop, x: u32, y: u32) -> f32 {
+fn drops_depth(drop: ScreenDrop, x: u32, y: u32) -> f32 {
     let way = streak_nearest(drop, drops_position(drop, f32(x) + 0.5, f32(y) + 0.5));
     return drop.distance * streak_depth(drop.depth_ratio, streak_time(drop.depth_ratio, way));
 }

@@ -9,22 +9,12 @@ fn drops_capture_texel(level: u32, column: i32, row: i32) -> vec3f {
     let whole = drops_frame.capture_size;
     let size = whole >> level;
     let edge = i32(size);
-    var x = column;
-    var y = row;
+    var texel = vec2u(vec2i(clamp(column, 0, edge - 1), clamp(row, 0, edge - 1)));
     if drops_frame.form == DROPS_DIRECTION {
-        if x < 0 || x >= edge {
-            x = clamp(x, 0, edge - 1);
-            y = edge - 1 - y;
-        }
-        if y < 0 || y >= edge {
-            y = clamp(y, 0, edge - 1);
-            x = edge - 1 - x;
-        }
+        texel = packing_octahedral_texel(size, column, row);
     }
-    x = clamp(x, 0, edge - 1);
-    y = clamp(y, 0, edge - 1);
     let first = 4u * (whole * whole - size * size) / 3u;
-    return drops_capture[first + u32(y) * size + u32(x)].rgb;
+    return drops_capture[first + texel.y * size + texel.x].rgb;
 }
 
 // A level of the capture at a position in [0, 1], bilinear.

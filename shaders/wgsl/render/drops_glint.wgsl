@@ -28,7 +28,7 @@ fn drops_glint_rest(index: u32) -> vec3f {
 }
 
 // Position on the picture of a point of a drop's disk, pixels from its middle: the disk is drawn out to the drop's oval.
-fn drops_glint_offset(drop: DropsDrop, position: vec2f) -> vec2f {
+fn drops_glint_offset(drop: ScreenDrop, position: vec2f) -> vec2f {
     let right = drop_glint_right(drop.towards);
     let up = cross(right, drop.towards);
     let at = (position * drop.oval.xy + vec2f(0.0, drop.oval.z)) * drop.slope;
@@ -37,7 +37,7 @@ fn drops_glint_offset(drop: DropsDrop, position: vec2f) -> vec2f {
 }
 
 // Light of a drop's glints in a pixel, as a radiance over all of the pixel.
-fn drops_glint_light(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec3f {
+fn drops_glint_light(index: u32, drop: ScreenDrop, x: u32, y: u32) -> vec3f {
     var light = vec3f(0.0);
     if drops_frame.atlas > 0u {
         return light;
@@ -61,7 +61,7 @@ fn drops_glint_light(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec3f {
         } else {
             let width = max(min(DROPS_GLINT_BOX * image, 2.0 * room) * pixels, 1.0);
             let from_pixel = drop.first + offset - vec2f(f32(x) + 0.5, f32(y) + 0.5);
-            part = drop.fraction * streak_mean(from_pixel, drop.way, width, drop.weights);
+            part = drop.fraction * streak_mean(from_pixel, drop.screen_delta, width, drop.weights);
         }
         light += glint.rgb * (drop.area * part);
     }

@@ -23,13 +23,6 @@ fn drops_mask_unit(v: vec3f) -> vec3f {
     return v / max(sqrt(dot(v, v)), 1.0e-20);
 }
 
-// The right of the view of a drop whose axis is the world's vertical.
-fn drops_mask_right(towards: vec3f) -> vec3f {
-    let sideways = vec3f(-towards.z, 0.0, towards.x);
-    let level = dot(sideways, sideways);
-    return select(vec3f(1.0, 0.0, 0.0), sideways / sqrt(max(level, 1.0e-20)), level > 1.0e-12);
-}
-
 // A texel of a mask.
 fn drops_mask_texel(layer: u32, column: i32, row: i32) -> DropsTexel {
     let last = i32(drops_frame.mask_size) - 1;

@@ -32,7 +32,7 @@ fn drops_shade_ray(drop: DropsShade, x: f32, y: f32) -> vec4f {
     if texel.coverage <= 0.0 {
         return vec4f(0.0);
     }
-    let right = drops_mask_right(drop.towards);
+    let right = drop_glint_right(drop.towards);
     let up = cross(right, drop.towards);
     // A sphere's deviation 2 (asin q - asin(q / n)) and its derivative, for the footprint.
     let q = min((x * x + y * y) * drop.half_extent * drop.half_extent, 0.98);

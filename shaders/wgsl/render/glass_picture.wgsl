@@ -3,7 +3,7 @@
 // and shows what stands in its new direction: the picture where that is in it, else the capture of what is around the eye.
 // The position of a point is given by the distance in its own direction. Light that is not transmitted (Fresnel, exact,
 // incoherent sum over the reflections within the pane) shows the eye's side, whose light is a fraction of that of the
-// surroundings; so does what is totally reflected back to the eye. A lens of some size is a set of points: what is out
+// environment; so does what is totally reflected back to the eye. A lens of some size is a set of points: what is out
 // of focus is blurred by as much as the lens says, and no light is lost.
 // Limits: the pane's thickness does not shift what is behind it; light that is totally reflected within a drop and leaves
 // it elsewhere continues without a second refraction.
@@ -156,22 +156,12 @@ fn glass_picture_texel(level: u32, column: i32, row: i32) -> vec4f {
 }
 
 // A texel of a level of the capture. Beyond an edge, the octahedral map continues mirrored about the edge's middle.
-fn glass_picture_round_texel(level: u32, column: i32, row: i32) -> vec4f {
+fn glass_picture_environment_texel(level: u32, column: i32, row: i32) -> vec4f {
     let whole = glass_picture_frame.capture_size;
     let size = whole >> level;
-    let edge = i32(size);
-    var x = column;
-    var y = row;
-    if x < 0 || x >= edge {
-        x = clamp(x, 0, edge - 1);
-        y = edge - 1 - y;
-    }
-    if y < 0 || y >= edge {
-        y = clamp(y, 0, edge - 1);
-        x = edge - 1 - x;
-    }
+    let texel = packing_octahedral_texel(size, column, row);
     let first = 4u * (whole * whole - size * size) / 3u;
-    return glass_picture_capture[first + u32(clamp(y, 0, edge - 1)) * size + u32(clamp(x, 0, edge - 1))];
+    return glass_picture_capture[first + texel.y * size + texel.x];
 }
 
 // A level of the picture or of the capture at a position in [0, 1], bilinear.
@@ -190,7 +180,7 @@ fn glass_picture_level(of_capture: bool, level: u32, position: vec2f) -> vec3f {
         let cell = vec2i(low) + step;
         if fraction > 0.0 {
             if of_capture {
-                sum += glass_picture_round_texel(level, cell.x, cell.y).rgb * fraction;
+                sum += glass_picture_environment_texel(level, cell.x, cell.y).rgb * fraction;
             } else {
                 sum += glass_picture_texel(level, cell.x, cell.y).rgb * fraction;
             }
@@ -215,7 +205,7 @@ fn glass_picture_at(of_capture: bool, position: vec2f, footprint: f32) -> vec3f 
 }
 
 // Radiance of the environment map in a direction, averaged over a footprint in radians.
-fn glass_picture_round(direction: vec3f, footprint: f32) -> vec3f {
+fn glass_picture_environment(direction: vec3f, footprint: f32) -> vec3f {
     let position = packing_octahedral_encode(direction) * 0.5 + 0.5;
     return glass_picture_at(true, position, footprint / glass_picture_frame.capture_texel);
 }
@@ -241,7 +231,7 @@ fn glass_picture_seen(from_eye: vec3f, direction: vec3f, shift: vec2f, footprint
         distance = glass_picture_texel(0u, i32(pixel.x), i32(pixel.y)).w;
     } else {
         let texel = (packing_octahedral_encode(direction) * 0.5 + 0.5) * f32(glass_picture_frame.capture_size);
-        distance = glass_picture_round_texel(0u, i32(texel.x), i32(texel.y)).w;
+        distance = glass_picture_environment_texel(0u, i32(texel.x), i32(texel.y)).w;
     }
     let to = direction + from_eye / clamp(distance, 0.1, GLASS_PICTURE_FAR);
     let position = glass_picture_project(to);
@@ -255,7 +245,7 @@ fn glass_picture_seen(from_eye: vec3f, direction: vec3f, shift: vec2f, footprint
         sum = glass_picture_at(false, at, texels) * fraction;
     }
     if fraction < 1.0 {
-        sum += glass_picture_round(to, footprint) * (1.0 - fraction);
+        sum += glass_picture_environment(to, footprint) * (1.0 - fraction);
     }
     return sum;
 }
@@ -278,7 +268,7 @@ fn glass_picture_world(v: vec3f) -> vec3f {
 fn glass_picture_inside(v: vec3f) -> vec3f {
     let aside = v.xy * glass_picture_frame.water;
     let out = vec3f(aside, -sqrt(max(1.0 - dot(aside, aside), 1.0e-4)));
-    return glass_picture_round(glass_picture_world(out), GLASS_PICTURE_MIRROR) * glass_picture_frame.room;
+    return glass_picture_environment(glass_picture_world(out), GLASS_PICTURE_MIRROR) * glass_picture_frame.room;
 }
 
 // Fraction of the light that the outer surface reflects: that of water under a normal, or that of dry glass.
@@ -328,7 +318,7 @@ fn glass_picture_through(position: vec2f, d: vec3f, from_eye: vec3f, shift: vec2
     }
     if glass_picture_frame.room > 0.0 {
         let mirror = glass_picture_world(vec3f(d.xy, -d.z));
-        sum += glass_picture_round(mirror, GLASS_PICTURE_MIRROR) * (glass_picture_frame.room * first);
+        sum += glass_picture_environment(mirror, GLASS_PICTURE_MIRROR) * (glass_picture_frame.room * first);
         let away = select(back, vec3f(back.xy, -back.z), back.z > 0.0);
         sum += glass_picture_inside(away) * max(rest - first, 0.0);
     }
@@ -342,10 +332,10 @@ fn glass_picture_diffuse(aside: vec2f, across: f32) -> vec3f {
     let upright = sqrt(1.0 - turned * turned);
     let outside = 0.5 - 0.5 * upright;
     let to_room = glass_picture_world(vec3f(aside * turned, -upright));
-    let room = glass_picture_round(to_room, GLASS_PICTURE_DIFFUSE) * glass_picture_frame.room;
+    let room = glass_picture_environment(to_room, GLASS_PICTURE_DIFFUSE) * glass_picture_frame.room;
     let side = select(-1.0, 1.0, turned > 0.0);
     let to_scene = glass_picture_world(vec3f(aside * (side * 0.70710678), 0.70710678));
-    return room * (1.0 - outside) + glass_picture_round(to_scene, GLASS_PICTURE_DIFFUSE) * outside;
+    return room * (1.0 - outside) + glass_picture_environment(to_scene, GLASS_PICTURE_DIFFUSE) * outside;
 }
 
 // Radiance of the wipers along a ray that meets the pane at a position, in a direction of the pane, at a fraction of the exposure; and 1,
@@ -360,7 +350,7 @@ fn glass_picture_wiper(position: vec2f, d: vec3f, fraction: f32) -> vec4f {
             var sum = glass_picture_diffuse(aside, part.x) * (part.y * (1.0 - first));
             if glass_picture_frame.room > 0.0 {
                 let mirror = glass_picture_world(vec3f(d.xy, -d.z));
-                sum += glass_picture_round(mirror, GLASS_PICTURE_MIRROR) * (glass_picture_frame.room * first);
+                sum += glass_picture_environment(mirror, GLASS_PICTURE_MIRROR) * (glass_picture_frame.room * first);
             }
             return vec4f(sum, 1.0);
         }

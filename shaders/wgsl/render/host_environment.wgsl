@@ -65,13 +65,6 @@ fn host_environment_picture(place: vec2f, width: f32) -> vec3f {
     return mix(host_environment_level(finer, place), host_environment_level(coarser, place), level - f32(finer));
 }
 
-// Texture coordinates of a direction of length 1 in an equirectangular map, +Y up.
-fn host_environment_coordinates(direction: vec3f) -> vec2f {
-    let horizontal = sqrt(direction.x * direction.x + direction.z * direction.z);
-    let turn = select(0.0, atan2(direction.z, direction.x), horizontal > 1.0e-6);
-    return vec2f(0.5 + turn * 0.15915494, 0.5 - atan2(direction.y, horizontal) * 0.31830987);
-}
-
 // Direction of a position in a texel of the map, in parts of the texel.
 fn host_environment_direction(x: u32, y: u32, dx: f32, dy: f32) -> vec3f {
     let scale = 2.0 / f32(host_environment_frame.size);
@@ -85,7 +78,7 @@ fn host_environment_seen(x: u32, y: u32) -> vec3f {
     for (var k = 0u; k < HOST_SKY_TAPS * HOST_SKY_TAPS; k += 1u) {
         let dx = (f32(k % HOST_SKY_TAPS) + 0.5) / f32(HOST_SKY_TAPS);
         let dy = (f32(k / HOST_SKY_TAPS) + 0.5) / f32(HOST_SKY_TAPS);
-        let uv = host_environment_coordinates(host_environment_direction(x, y, dx, dy));
+        let uv = equirect_coordinates(host_environment_direction(x, y, dx, dy));
         let at = vec2u(clamp(uv * size, vec2f(0.0), size - 1.0));
         sum += host_radiance_checked(textureLoad(host_environment_sky, at, 0).rgb, host_environment_frame.sky_scale);
     }

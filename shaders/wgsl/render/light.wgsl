@@ -63,7 +63,7 @@ fn light_sample(light: RenderLight, point: vec3f, least: f32) -> LightSample {
     // An area shines to both sides.
     let is_area = light.kind == SCENE_LIGHT_AREA;
     let shape = select(edge * edge, abs(cosine), is_area);
-    let spread = select(min(light.radius / distance, LIGHT_LARGEST_SPREAD), 0.0, is_area);
+    let spread = select(min(light.radius / distance, LIGHT_MAX_SPREAD), 0.0, is_area);
     return LightSample(direction, distance, light.color * (window * shape / square), spread);
 }
 

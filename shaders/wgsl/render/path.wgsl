@@ -73,6 +73,23 @@ struct PathPlan {
     spread: f32,
 }
 
+// A surface that a ray of the camera has met.
+struct PathMeeting {
+    surface: Surface,
+    direct: vec3f,
+    // Light of surfaces that shine, and of lamps with soft shadows, on its diffuse base, over pi.
+    glow: vec3f,
+    // Part of that light that the relief of the surface leaves.
+    relief: f32,
+    // True if a lamp is hidden in part.
+    is_soft: bool,
+    plan: PathPlan,
+    // True if its light is averaged over neighboring pixels.
+    told: bool,
+    // Largest distance from its plane at which the surface of a neighboring pixel may be.
+    slack: f32,
+}
+
 // A path that has found nothing.
 fn path_nothing() -> ViewPath {
     var path = ViewPath();
@@ -312,13 +329,85 @@ fn path_draw(at: Surface, view: vec3f, plan: PathPlan, leaves: u32, is_mirror: b
     return ray;
 }
 
-// The slot of what a mirror shows; the one before if it shows no diffuse base.
-fn path_show_mirrored(slot: PathSlot, light: PathLight, gloss: vec3f, slack: f32, spread: f32) -> PathSlot {
-    if light.distance < 0.0 {
-        return slot;
+// A path with the light on what a mirror shows; the same path if it shows no diffuse base.
+fn path_show_mirrored(path: ViewPath, light: PathLight, gloss: vec3f, meeting: PathMeeting) -> ViewPath {
+    var shown = path;
+    if light.distance >= 0.0 {
+        let slack = meeting.slack + light.distance * (2.0 * meeting.plan.spread + SKYLIGHT_SLACK);
+        shown.mirror = PathSlot(light.shown, slack, gloss * light.factor, 0.0, light.normal, light.position);
     }
-    let its_slack = slack + light.distance * (2.0 * spread + SKYLIGHT_SLACK);
-    return PathSlot(light.shown, its_slack, gloss * light.factor, 0.0, light.normal, light.position);
+    return shown;
+}
+
+// The direction that a mirror in the plane of a surface would show.
+fn path_mirrored(surface: Surface, towards: vec3f) -> vec3f {
+    return towards - surface.normal * (2.0 * dot(towards, surface.normal));
+}
+
+// A path with what water mirrors, which is a fraction of the light.
+fn path_show_water(
+    path: ViewPath, meeting: PathMeeting, light: PathLight, fraction: f32, towards: vec3f, throughput: vec3f,
+) -> ViewPath {
+    var shown = path;
+    let surface = meeting.surface;
+    let all = f32(meeting.plan.mirrors);
+    shown.radiance += throughput * meeting.direct;
+    if meeting.plan.kept {
+        shown.mirror = PathSlot(
+            light.mirror / max(all * fraction, 1.0e-6), meeting.slack, throughput * fraction, surface.roughness,
+            path_mirrored(surface, towards), surface.position,
+        );
+        return shown;
+    }
+    shown.radiance += throughput * light.mirror / all;
+    return path_show_mirrored(shown, light, throughput / all, meeting);
+}
+
+// A path with what a surface shows.
+fn path_show(
+    path: ViewPath, meeting: PathMeeting, light: PathLight, towards: vec3f, layer: u32, throughput: vec3f,
+) -> ViewPath {
+    var shown = path;
+    let surface = meeting.surface;
+    var plan = meeting.plan;
+    let cover = path_cover(surface);
+    shown.radiance += throughput * meeting.direct * cover;
+    if (surface.flags & SCENE_UNLIT) != 0u {
+        return shown;
+    }
+    let mirrored = path_mirrored(surface, towards);
+    let rays_of_gloss = select(plan.mirrors, plan.rays, plan.chance > 0.0);
+    var base = light.base / f32(max(plan.rays, 1u)) + meeting.glow;
+    var mirror = light.mirror / f32(max(rays_of_gloss, 1u));
+    if surface.roughness >= PATH_SHINES {
+        // The widest lobes see of what shines about what the diffuse base sees.
+        mirror += meeting.glow;
+    }
+    if plan.mirrors + plan.rays == 0u {
+        base = sky_irradiance(surface.normal) + meeting.glow;
+        mirror = sky_cone(mirrored, scatter_mirror(surface, -towards).width);
+    } else if plan.mirrors == 0u && plan.chance == 0.0 {
+        // Too faint to trace rays for it.
+        base -= meeting.glow * plan.gloss / max(plan.body + plan.gloss, vec3f(1.0e-9));
+        plan.body += plan.gloss;
+        plan.gloss = vec3f(0.0);
+    }
+    let of_base = throughput * plan.body * (cover * meeting.relief);
+    let of_gloss = throughput * plan.gloss * cover;
+    if meeting.told {
+        shown.base = PathSlot(base, meeting.slack, of_base, 0.0, surface.normal, surface.position);
+        let mirrors = plan.mirrors > 0u && (surface.roughness < PATH_CURVED || !plan.kept)
+            && path_max(plan.gloss) > PATH_PLAIN_GLOSS;
+        shown.plain = !(mirrors || layer > 0u || meeting.is_soft);
+    } else {
+        shown.radiance += of_base * base;
+    }
+    if plan.kept {
+        shown.mirror = PathSlot(mirror, meeting.slack, of_gloss, surface.roughness, mirrored, surface.position);
+        return shown;
+    }
+    shown.radiance += of_gloss * mirror;
+    return path_show_mirrored(shown, light, of_gloss, meeting);
 }
 
 // Traces a ray. If it meets the surface that `last` met, it sees the same.
@@ -341,47 +430,39 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
     for (var layer = 0u; layer < SCENE_LAYERS; layer += 1u) {
         // Turn 0 meets the surface; the others are rays that look for its light. One text for all of them: a shader holds
         // the hierarchy's walk and the materials once.
-        var surface = Surface();
-        var plan = PathPlan();
+        var meeting = PathMeeting();
+        meeting.relief = 1.0;
         var light = PathLight();
         light.distance = -1.0;
-        var direct = vec3f(0.0);
-        // Light of surfaces that shine, on its diffuse base, over pi, and whether lamps are hidden in part.
-        var glow = vec3f(0.0);
-        var soft = false;
-        // Part of that light that the relief of the surface leaves.
-        var relief = 1.0;
-        var told = false;
-        var slack = 0.0;
         var of_water = false;
         var ripple = vec3f(0.0);
-        for (var turn = 0u; turn <= plan.mirrors + plan.rays; turn += 1u) {
+        for (var turn = 0u; turn <= meeting.plan.mirrors + meeting.plan.rays; turn += 1u) {
             var ray = ScatterRay(towards, cone, vec3f(1.0), 0.0, vec3f(1.0));
             var from_position = start;
             var nearest = near;
-            var at = surface;
+            var at = meeting.surface;
             var view = -towards;
             var leaves = select(PATH_FIRST, PATH_STRAIGHT, turn == 0u);
             var given = vec3f(0.0);
             // Roughness of the gloss that the ray follows.
             var followed = 1.0;
-            let is_mirror = turn <= plan.mirrors;
-            let of_shown = plan.replaced && is_mirror;
+            let is_mirror = turn <= meeting.plan.mirrors;
+            let of_shown = meeting.plan.replaced && is_mirror;
             for (var bounce = 0u; bounce < PATH_BOUNCES; bounce += 1u) {
                 var numbers = vec4f(0.0);
                 if turn > 0u {
-                    let index = turn - 1u - select(plan.mirrors, 0u, is_mirror);
-                    numbers = path_lattice_numbers(random, turn, bounce, index, select(plan.rays, plan.mirrors, is_mirror));
+                    let index = turn - 1u - select(meeting.plan.mirrors, 0u, is_mirror);
+                    numbers = path_lattice_numbers(random, turn, bounce, index, select(meeting.plan.rays, meeting.plan.mirrors, is_mirror));
                 }
                 if leaves != PATH_STRAIGHT {
                     let is_first = leaves == PATH_FIRST;
                     var next = ScatterRay();
                     if SCENE_WET && of_water && is_first {
                         next = path_water_ray(ripple, at.roughness, view, cone, numbers.x, numbers.y);
-                    } else if leaves == PATH_MIRROR || (is_first && is_mirror && !plan.drawn) {
+                    } else if leaves == PATH_MIRROR || (is_first && is_mirror && !meeting.plan.drawn) {
                         next = scatter_mirror(at, view);
                     } else {
-                        next = path_draw(at, view, plan, leaves, is_mirror, numbers);
+                        next = path_draw(at, view, meeting.plan, leaves, is_mirror, numbers);
                     }
                     from_position = at.position + at.facet * render_frame.nearest;
                     nearest = render_frame.nearest;
@@ -391,7 +472,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                             next.mirror *= select(0.0, 1.0, next.along.y > 0.0);
                         }
                         ray = next;
-                        ray.width += cone + plan.spread;
+                        ray.width += cone + meeting.plan.spread;
                         followed = at.roughness;
                     } else if leaves == PATH_MIRROR {
                         next.mirror = ray.mirror * brdf_fresnel(at.normal_reflectance, max(dot(at.normal, view), 0.0));
@@ -499,31 +580,31 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     lit = emission + lamplight.lit;
                     if turn == 0u {
                         // What is told apart goes with the rest of the light on the diffuse base, which has the material's occlusion.
-                        glow = lamplight.glow / max(found.occlusion, PATH_OCCLUSION);
-                        soft = lamplight.is_soft;
+                        meeting.glow = lamplight.glow / max(found.occlusion, PATH_OCCLUSION);
+                        meeting.is_soft = lamplight.is_soft;
                         let rest = max(light_weight(sky_irradiance(found.normal)), 1.0e-9);
-                        relief = (rest + lamplight.relief_light) / (rest + lamplight.flat_light);
+                        meeting.relief = (rest + lamplight.relief_light) / (rest + lamplight.flat_light);
                     }
                 }
                 if turn == 0u {
-                    surface = found;
-                    direct = lit;
-                    told = path.base.slack == 0.0 && path_cover(found) == 1.0 && found.transmission == 0.0;
+                    meeting.surface = found;
+                    meeting.direct = lit;
+                    meeting.told = path.base.slack == 0.0 && path_cover(found) == 1.0 && found.transmission == 0.0;
                     let free = path.mirror.slack == 0.0;
                     if SCENE_WET && of_water {
                         let rippled = ripple.z > PUDDLE_WATER_RIPPLED;
-                        plan.mirrors = max(render_frame.sky_rays, select(1u, PUDDLE_WATER_RAYS, rippled));
-                        plan.gloss = vec3f(1.0);
-                        plan.fraction = 1.0;
-                        plan.drawn = rippled && free;
-                        plan.kept = plan.drawn;
-                        plan.replaced = !rippled && free;
+                        meeting.plan.mirrors = max(render_frame.sky_rays, select(1u, PUDDLE_WATER_RAYS, rippled));
+                        meeting.plan.gloss = vec3f(1.0);
+                        meeting.plan.fraction = 1.0;
+                        meeting.plan.drawn = rippled && free;
+                        meeting.plan.kept = meeting.plan.drawn;
+                        meeting.plan.replaced = !rippled && free;
                     } else if !unlit {
-                        plan = path_plan(found, -towards, cone * hit.distance, told, free && !under);
+                        meeting.plan = path_plan(found, -towards, cone * hit.distance, meeting.told, free && !under);
                     }
                     // Neighboring pixels are on one plane if they are no farther from it than this.
                     let from_eye = found.position - origin;
-                    slack = sqrt(dot(from_eye, from_eye)) * (cone * 2.0 + SKYLIGHT_SLACK);
+                    meeting.slack = sqrt(dot(from_eye, from_eye)) * (cone * 2.0 + SKYLIGHT_SLACK);
                     break;
                 }
                 let cover = path_cover(found);
@@ -566,20 +647,10 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                 view = -ray.along;
             }
         }
-        let mirrored = towards - surface.normal * (2.0 * dot(towards, surface.normal));
+        let surface = meeting.surface;
         if SCENE_WET && of_water {
-            let all = f32(plan.mirrors);
             let fraction = path_water_fraction(ripple, -towards);
-            path.radiance += throughput * direct;
-            if plan.kept {
-                path.mirror = PathSlot(
-                    light.mirror / max(all * fraction, 1.0e-6), slack, throughput * fraction, surface.roughness, mirrored,
-                    surface.position,
-                );
-            } else {
-                path.radiance += throughput * light.mirror / all;
-                path.mirror = path_show_mirrored(path.mirror, light, throughput / all, slack, plan.spread);
-            }
+            path = path_show_water(path, meeting, light, fraction, towards, throughput);
             throughput *= 1.0 - fraction;
             // On beneath the surface. Ground that the model does not have is where it would be, seen in the model.
             let puddle = puddle_load(water.puddle);
@@ -595,42 +666,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
             under = true;
             continue;
         }
-        let cover = path_cover(surface);
-        path.radiance += throughput * direct * cover;
-        if (surface.flags & SCENE_UNLIT) == 0u {
-            let rays_of_gloss = select(plan.mirrors, plan.rays, plan.chance > 0.0);
-            var base = light.base / f32(max(plan.rays, 1u)) + glow;
-            var mirror = light.mirror / f32(max(rays_of_gloss, 1u));
-            if surface.roughness >= PATH_SHINES {
-                // The widest lobes see of what shines about what the diffuse base sees.
-                mirror += glow;
-            }
-            if plan.mirrors + plan.rays == 0u {
-                base = sky_irradiance(surface.normal) + glow;
-                mirror = sky_cone(mirrored, scatter_mirror(surface, -towards).width);
-            } else if plan.mirrors == 0u && plan.chance == 0.0 {
-                // Too faint to trace rays for it.
-                base -= glow * plan.gloss / max(plan.body + plan.gloss, vec3f(1.0e-9));
-                plan.body += plan.gloss;
-                plan.gloss = vec3f(0.0);
-            }
-            let of_base = throughput * plan.body * (cover * relief);
-            let of_gloss = throughput * plan.gloss * cover;
-            if told {
-                path.base = PathSlot(base, slack, of_base, 0.0, surface.normal, surface.position);
-                let mirrors = plan.mirrors > 0u && (surface.roughness < PATH_CURVED || !plan.kept)
-                    && path_max(plan.gloss) > PATH_PLAIN_GLOSS;
-                path.plain = !(mirrors || layer > 0u || soft);
-            } else {
-                path.radiance += of_base * base;
-            }
-            if plan.kept {
-                path.mirror = PathSlot(mirror, slack, of_gloss, surface.roughness, mirrored, surface.position);
-            } else {
-                path.radiance += of_gloss * mirror;
-                path.mirror = path_show_mirrored(path.mirror, light, of_gloss, slack, plan.spread);
-            }
-        }
+        path = path_show(path, meeting, light, towards, layer, throughput);
         under = false;
         throughput *= path_open(surface);
         if path_max(throughput) < 1.0e-3 {

@@ -26,7 +26,7 @@ struct ProfilesFrame {
 }
 
 @group(0) @binding(0) var<uniform> profiles_frame: ProfilesFrame;
-@group(0) @binding(1) var<storage, read_write> profiles_list: array<DropsDrop>;
+@group(0) @binding(1) var<storage, read_write> profiles_list: array<ScreenDrop>;
 // Positions and radii of the drops (project.wgsl).
 @group(0) @binding(2) var<storage, read> profiles_rows: array<vec4f>;
 // Tables of the masks (project.wgsl), of which the shapes are read here.
@@ -47,17 +47,17 @@ struct ProfilesFrame {
 var<workgroup> profiles_sums: array<atomic<u32>, PROFILES_TOTALS>;
 
 // True if a drop is a streak that is sampled.
-fn profiles_is_sampled(drop: DropsDrop) -> bool {
+fn profiles_is_sampled(drop: ScreenDrop) -> bool {
     return drop.reach > 0.0 && drop.kind == DROPS_TABLE && drop.grid > 0u;
 }
 
 // True if a drop shows the mean of its class.
-fn profiles_is_mean(drop: DropsDrop) -> bool {
+fn profiles_is_mean(drop: ScreenDrop) -> bool {
     return drop.reach > 0.0 && drop.kind != DROPS_STILL && drop.grid == 0u;
 }
 
 // True if a drop oscillates.
-fn profiles_oscillates(drop: DropsDrop) -> bool {
+fn profiles_oscillates(drop: ScreenDrop) -> bool {
     return drop.mode_phase.x != 0.0 || drop.mode_phase.y != 0.0;
 }
 
@@ -67,7 +67,7 @@ fn profiles_rows_of(rows: u32) -> u32 {
 }
 
 // Rows and columns of rays, rows of the profile, and its columns for each of the rays', by the streak's width and turns.
-fn profiles_sized(drop: DropsDrop) -> vec4u {
+fn profiles_sized(drop: ScreenDrop) -> vec4u {
     // The drop's area on the picture is that of its mask.
     let width = 2.0 * sqrt(drop.area / PROFILES_PI);
     var kind = 0u;
@@ -79,9 +79,9 @@ fn profiles_sized(drop: DropsDrop) -> vec4u {
     let turned = atan2(along, 1.0) / PROFILES_TURNED;
     let oscillates = profiles_oscillates(drop);
     let turns = select(0.0, drop.cycles.y * (span.last - span.first), oscillates);
-    let least = select(1.0, PROFILES_LEAST[kind], oscillates);
+    let least = select(1.0, PROFILES_MIN[kind], oscillates);
     let wanted = ceil(max(turns * PROFILES_PER_TURN[kind], turned));
-    let rows = 1u + u32(clamp(wanted, least, PROFILES_MOST[kind]));
+    let rows = 1u + u32(clamp(wanted, least, PROFILES_MAX[kind]));
     return vec4u(rows, u32(PROFILES_COLUMNS[kind]), profiles_rows_of(rows), u32(PROFILES_FINE[kind]));
 }
 

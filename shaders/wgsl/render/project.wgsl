@@ -62,7 +62,7 @@ struct ProjectPath {
 
 // Oscillation during the part of the exposure.
 struct ProjectModes {
-    // As in DropsDrop.
+    // As in ScreenDrop.
     mode_phase: vec4f,
     cycles: vec2f,
     // No part of the surface goes farther, as a fraction of the radius.
@@ -79,7 +79,7 @@ struct ProjectMask {
 
 // A drop on the picture, and its velocity relative to it.
 struct ProjectShown {
-    drop: DropsDrop,
+    drop: ScreenDrop,
     velocity: vec3f,
 }
 
@@ -89,7 +89,7 @@ struct ProjectShown {
 @group(0) @binding(2) var<storage, read> project_masks: array<f32>;
 // Frequencies of both modes in units of 2^-16 Hz, by the bits of the diameter.
 @group(0) @binding(3) var<storage, read> project_frequencies: array<vec2u>;
-@group(0) @binding(4) var<storage, read_write> project_list: array<DropsDrop>;
+@group(0) @binding(4) var<storage, read_write> project_list: array<ScreenDrop>;
 // Position relative to the scene's origin and radius, m, as drop_light.wgsl reads it; then, for an atlas, the axes and ids.
 @group(0) @binding(5) var<storage, read_write> project_rows: array<vec4f>;
 
@@ -351,7 +351,7 @@ fn project_drop(drop: EyeDrop) -> ProjectShown {
     let end = vec2f(dot(path.last, right), dot(path.last, up)) / dot(path.last, towards);
     let first = camera_project(camera, path.first);
     shown.velocity = path.velocity;
-    shown.drop = DropsDrop(
+    shown.drop = ScreenDrop(
         towards,
         distance,
         camera_project(camera, offset),

@@ -2,19 +2,10 @@
 // +Y is up; u = 0.5 + atan2(z, x) / 2 pi, v = 0.5 - asin(y) / pi from the top.
 // Twin: downpour_trace::sky.
 
-// Texture coordinates of a direction of length 1.
-fn sky_coordinates(direction: vec3f) -> vec2f {
-    let u = 0.5 + atan2(direction.z, direction.x) * 0.15915494;
-    // The angle of (y, horizontal) is asin(y), and does not lose its digits near the poles.
-    let horizontal = sqrt(direction.x * direction.x + direction.z * direction.z);
-    let v = 0.5 - atan2(direction.y, horizontal) * 0.31830987;
-    return vec2f(u, v);
-}
-
 // A level of the sky in a direction, bilinear.
 fn sky_level(level: u32, direction: vec3f) -> vec3f {
     let size = render_frame.sky_levels[level];
-    let uv = sky_coordinates(direction);
+    let uv = equirect_coordinates(direction);
     let width = i32(size.x);
     let height = i32(size.y);
     let x = uv.x * f32(size.x) - 0.5;

@@ -21,11 +21,6 @@ struct SkylightSlot {
     position: vec3f,
 }
 
-// The luminance of a color, for comparisons.
-fn skylight_luminance(color: vec3f) -> f32 {
-    return dot(color, vec3f(0.2126, 0.7152, 0.0722));
-}
-
 // Agreement of two mirrored directions within the lobe of a roughness, 0 to 1.
 fn skylight_lobe(cosine: f32, roughness: f32) -> f32 {
     let alpha = roughness * roughness;
@@ -81,7 +76,7 @@ fn skylight_same(own: SkylightSlot, other: SkylightSlot) -> f32 {
 
 // Degree to which two means are the same but for their noise, 0 to 1; variances are those of the means.
 fn skylight_alike(own: vec4f, other: vec4f) -> f32 {
-    let apart = skylight_luminance(own.xyz) - skylight_luminance(other.xyz);
+    let apart = color_luminance(own.xyz) - color_luminance(other.xyz);
     return max(1.0 - apart * apart / max(SKYLIGHT_NOISE * (own.w + other.w), 1.0e-20), 0.0);
 }
 
@@ -105,7 +100,7 @@ fn skylight_mean(x: u32, y: u32, slot: u32) -> vec4f {
                 counts *= skylight_same(own, other);
             }
             if counts > 0.0 {
-                let luminance = skylight_luminance(other.light);
+                let luminance = color_luminance(other.light);
                 sum += other.light * counts;
                 squares += luminance * luminance * counts;
                 weight += counts;
@@ -114,7 +109,7 @@ fn skylight_mean(x: u32, y: u32, slot: u32) -> vec4f {
         }
     }
     let mean = sum / weight;
-    let luminance = skylight_luminance(mean);
+    let luminance = color_luminance(mean);
     let variance = max(squares / weight - luminance * luminance, 0.0);
     // Effective number of samples; one alone gives no variance.
     let count = weight * weight / weights;

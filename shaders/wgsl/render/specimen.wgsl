@@ -135,17 +135,7 @@ fn specimen_turns(y: f32, x: f32) -> f32 {
     let wide = abs(x);
     let tall = abs(y);
     let t = min(wide, tall) / max(max(wide, tall), SPECIMEN_TINY);
-    let s = t * t;
-    var sum = SPECIMEN_TURN[8];
-    sum = sum * s + SPECIMEN_TURN[7];
-    sum = sum * s + SPECIMEN_TURN[6];
-    sum = sum * s + SPECIMEN_TURN[5];
-    sum = sum * s + SPECIMEN_TURN[4];
-    sum = sum * s + SPECIMEN_TURN[3];
-    sum = sum * s + SPECIMEN_TURN[2];
-    sum = sum * s + SPECIMEN_TURN[1];
-    sum = sum * s + SPECIMEN_TURN[0];
-    let octant = sum * t;
+    let octant = octant_turns(t);
     let quadrant = select(octant, 0.25 - octant, wide < tall);
     let half = select(quadrant, 0.5 - quadrant, x < 0.0);
     return select(half, -half, y < 0.0);

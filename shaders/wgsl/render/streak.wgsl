@@ -11,7 +11,7 @@
 // Twin: downpour_render::rain::streak.
 
 // A drop on the picture.
-struct DropsDrop {
+struct ScreenDrop {
     // From the eye to the drop's middle, of length 1.
     towards: vec3f,
     // Meters from the eye.
@@ -34,7 +34,7 @@ struct DropsDrop {
     along: vec2f,
     // The same on the picture, pixels.
     first: vec2f,
-    way: vec2f,
+    screen_delta: vec2f,
     // Half the width and half the height of the oval, and how far its middle is up, in equivalent radii.
     oval: vec3f,
     // Depth at the end over that at the beginning.
@@ -98,7 +98,7 @@ fn streak_weight(weights: vec2f, time: f32) -> f32 {
 }
 
 // The fraction of the way that is nearest to a position on the plane.
-fn streak_nearest(drop: DropsDrop, at: vec2f) -> f32 {
+fn streak_nearest(drop: ScreenDrop, at: vec2f) -> f32 {
     return clamp(dot(at - drop.start, drop.along) / max(dot(drop.along, drop.along), 1.0e-20), 0.0, 1.0);
 }
 
@@ -116,7 +116,7 @@ fn streak_stretch(mode_phase: vec4f, turns: vec2f, time: f32) -> vec3f {
 }
 
 // Returns the chord along which a ray through a point of the plane passes the drop.
-fn streak_chord(drop: DropsDrop, at: vec2f) -> StreakChord {
+fn streak_chord(drop: ScreenDrop, at: vec2f) -> StreakChord {
     let way = streak_nearest(drop, at);
     let time = streak_time(drop.depth_ratio, way);
     let scale = drop.slope / streak_depth(drop.depth_ratio, time);
@@ -158,7 +158,7 @@ fn streak_chord(drop: DropsDrop, at: vec2f) -> StreakChord {
 }
 
 // Position in the mask, in units of half its width, of a position on a chord, in units of half its length.
-fn streak_mask_position(drop: DropsDrop, chord: StreakChord, v: f32) -> vec2f {
+fn streak_mask_position(drop: ScreenDrop, chord: StreakChord, v: f32) -> vec2f {
     let away = vec2f(chord.direction.y, -chord.direction.x);
     let at = (away * chord.across + chord.direction * (v * chord.half)) * drop.oval.xy;
     return (at + vec2f(0.0, drop.oval.z)) / drop.half_extent;
@@ -214,7 +214,7 @@ fn streak_mean(begin: vec2f, way: vec2f, width: f32, weights: vec2f) -> f32 {
 }
 
 // The fraction of a pixel that a drop which is not sampled covers, by weight.
-fn streak_cover(drop: DropsDrop, x: u32, y: u32) -> f32 {
+fn streak_cover(drop: ScreenDrop, x: u32, y: u32) -> f32 {
     let begin = drop.first - vec2f(f32(x) + 0.5, f32(y) + 0.5);
-    return min(drop.area * drop.fraction * streak_mean(begin, drop.way, drop.spread, drop.weights), 1.0);
+    return min(drop.area * drop.fraction * streak_mean(begin, drop.screen_delta, drop.spread, drop.weights), 1.0);
 }

@@ -10,7 +10,7 @@
 // part, of the first two, three and of all four, each over the length of the whole chord.
 // Twin: downpour_render::rain::streak_light.
 
-@group(0) @binding(2) var<storage, read> streak_light_drops: array<DropsDrop>;
+@group(0) @binding(2) var<storage, read> streak_light_drops: array<ScreenDrop>;
 @group(0) @binding(3) var<storage, read> streak_light_paths: array<StreakPath>;
 // First the number of jobs; then for each the index of the path, and the first of 64 columns of all rows of its profile.
 @group(0) @binding(4) var<storage, read> streak_light_jobs: array<vec2u>;
@@ -242,7 +242,7 @@ fn streak_light_spot(
 }
 
 // From the eye to a drop's middle at a time, of length 1.
-fn streak_light_view(drop: DropsDrop, row: f32) -> vec3f {
+fn streak_light_view(drop: ScreenDrop, row: f32) -> vec3f {
     let right = drop_glint_right(drop.towards);
     let up = cross(right, drop.towards);
     let middle = streak_path_instant(drop, row).middle;

@@ -36,7 +36,7 @@ fn streak_lookup_chord(first: u32, columns: u32, row: u32, at: f32) -> vec4f {
 }
 
 // Returns the position in a drop's profile for a point of the plane.
-fn streak_lookup_passage(drop: DropsDrop, at: vec2f) -> StreakPassage {
+fn streak_lookup_passage(drop: ScreenDrop, at: vec2f) -> StreakPassage {
     let first = drop.profile;
     let sizes = vec4u(streak_table[first]);
     let span = streak_span(drop);
@@ -118,7 +118,7 @@ fn streak_lookup_until(passage: StreakPassage, position: f32) -> vec3f {
 }
 
 // A streak at a position of the plane: radiance times the fraction of the exposure in which it is covered, and this fraction.
-fn streak_lookup_shown(drop: DropsDrop, at: vec2f) -> vec4f {
+fn streak_lookup_shown(drop: ScreenDrop, at: vec2f) -> vec4f {
     let passage = streak_lookup_passage(drop, at);
     if passage.high <= passage.low {
         return vec4f(0.0);

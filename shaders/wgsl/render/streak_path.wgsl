@@ -56,7 +56,7 @@ struct StreakLine {
 }
 
 // A drop at the time of a row of its profile, by the fraction of the rows before it.
-fn streak_path_instant(drop: DropsDrop, row: f32) -> StreakInstant {
+fn streak_path_instant(drop: ScreenDrop, row: f32) -> StreakInstant {
     let span = streak_span(drop);
     let time = streak_span_time(span, row);
     let way = time * drop.depth_ratio / max(1.0 - time + time * drop.depth_ratio, 1.0e-20);
@@ -70,13 +70,13 @@ fn streak_path_instant(drop: DropsDrop, row: f32) -> StreakInstant {
 }
 
 // The unit vector along the motion on the plane, and the one across it.
-fn streak_path_axes(drop: DropsDrop) -> vec4f {
+fn streak_path_axes(drop: ScreenDrop) -> vec4f {
     let along = drop.along / max(sqrt(dot(drop.along, drop.along)), 1.0e-20);
     return vec4f(along, along.y, -along.x);
 }
 
 // s2 and s3 at a time.
-fn streak_path_displacement(path: StreakPath, drop: DropsDrop, time: f32) -> vec2f {
+fn streak_path_displacement(path: StreakPath, drop: ScreenDrop, time: f32) -> vec2f {
     return vec2f(
         path.amplitudes.x * drop_oscillation_sine(drop.mode_phase.z + drop.cycles.x * time),
         path.amplitudes.y * drop_oscillation_sine(drop.mode_phase.w + drop.cycles.y * time),
@@ -112,7 +112,7 @@ fn streak_path_back(path: StreakPath, v: vec3f) -> vec3f {
 }
 
 // A ray of the pixel whose ray is point.x beside the path, when it is point.y ahead of the drop's middle.
-fn streak_path_line(path: StreakPath, drop: DropsDrop, instant: StreakInstant, point: vec2f) -> StreakLine {
+fn streak_path_line(path: StreakPath, drop: ScreenDrop, instant: StreakInstant, point: vec2f) -> StreakLine {
     let axes = streak_path_axes(drop);
     let offset = axes.zw * (point.x * (1.0 + instant.funnel * point.y)) + axes.xy * point.y;
     let through = axes.zw * point.x + axes.xy * (instant.follow * point.y);

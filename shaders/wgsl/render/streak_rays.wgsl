@@ -5,7 +5,7 @@
 // across; rays are in a separate buffer, row by row, column by column, along the chord.
 // Twin: downpour_render::rain::streak_rays.
 
-@group(0) @binding(0) var<storage, read> streak_rays_drops: array<DropsDrop>;
+@group(0) @binding(0) var<storage, read> streak_rays_drops: array<ScreenDrop>;
 @group(0) @binding(1) var<storage, read> streak_rays_paths: array<StreakPath>;
 // First the number of jobs; then for each the indices of the path and of the row.
 @group(0) @binding(2) var<storage, read> streak_rays_jobs: array<vec2u>;
@@ -20,7 +20,7 @@ fn streak_rays_beside(instant: StreakInstant, radius: f32, c: f32, s: f32) -> ve
 }
 
 // A point of the outline at an angle from the motion.
-fn streak_rays_outline(path: StreakPath, drop: DropsDrop, instant: StreakInstant, angle: f32) -> vec2f {
+fn streak_rays_outline(path: StreakPath, drop: ScreenDrop, instant: StreakInstant, angle: f32) -> vec2f {
     let axes = streak_path_axes(drop);
     let c = cos(angle);
     let s = sin(angle);
@@ -72,7 +72,7 @@ fn streak_rays_chord(across: f32) -> vec2f {
 }
 
 // The ray through a point across and along the motion.
-fn streak_rays_ray(path: StreakPath, drop: DropsDrop, instant: StreakInstant, point: vec2f) -> StreakRay {
+fn streak_rays_ray(path: StreakPath, drop: ScreenDrop, instant: StreakInstant, point: vec2f) -> StreakRay {
     let line = streak_path_line(path, drop, instant, point);
     let time = instant.time - point.y * instant.pace;
     let body = streak_path_body(path, streak_path_displacement(path, drop, time));

@@ -22,7 +22,7 @@ struct StreakSpan {
 }
 
 // The span of a streak.
-fn streak_span(drop: DropsDrop) -> StreakSpan {
+fn streak_span(drop: ScreenDrop) -> StreakSpan {
     let ratio = max(drop.depth_ratio, 1.0e-6);
     let moves = max(sqrt(dot(drop.along, drop.along)), 1.0e-20);
     // An equivalent radius when the exposure begins.

@@ -17,7 +17,7 @@ struct TilesFrame {
 }
 
 @group(0) @binding(0) var<uniform> tiles_frame: TilesFrame;
-@group(0) @binding(1) var<storage, read> tiles_drops: array<DropsDrop>;
+@group(0) @binding(1) var<storage, read> tiles_drops: array<ScreenDrop>;
 // For each edge how many drops its lists have at most; a bit for each edge whose number is beyond 32 bits; then from TILES_HEAD the
 // number of drops of each tile, and after these are placed 0.
 @group(0) @binding(2) var<storage, read_write> tiles_counts: array<atomic<u32>>;
@@ -47,11 +47,11 @@ fn tiles_within(low: f32, high: f32, count: u32) -> vec2u {
 }
 
 // First and last row of tiles that a drop may touch; (1, 0): there is none.
-fn tiles_rows(drop: DropsDrop, edge: u32, size: vec2u) -> vec2u {
+fn tiles_rows(drop: ScreenDrop, edge: u32, size: vec2u) -> vec2u {
     if drop.reach <= 0.0 {
         return vec2u(1u, 0u);
     }
-    let end = drop.first + drop.way;
+    let end = drop.first + drop.screen_delta;
     let low = min(drop.first, end) - drop.reach;
     let high = max(drop.first, end) + drop.reach;
     let columns = tiles_within(low.x, high.x, size.x);
@@ -63,23 +63,23 @@ fn tiles_rows(drop: DropsDrop, edge: u32, size: vec2u) -> vec2u {
 }
 
 // First and last tile of a row of tiles that the path of a drop may touch; (1, 0): there is none.
-fn tiles_columns(drop: DropsDrop, row: u32, edge: u32, width: u32) -> vec2u {
+fn tiles_columns(drop: ScreenDrop, row: u32, edge: u32, width: u32) -> vec2u {
     let top = f32(row * edge) - drop.reach;
     let bottom = f32((row + 1u) * edge) + drop.reach;
     // The part of the path that is as high as this row.
     var low = 0.0;
     var high = 1.0;
-    if abs(drop.way.y) > 1.0e-3 {
-        let a = (top - drop.first.y) / drop.way.y;
-        let b = (bottom - drop.first.y) / drop.way.y;
+    if abs(drop.screen_delta.y) > 1.0e-3 {
+        let a = (top - drop.first.y) / drop.screen_delta.y;
+        let b = (bottom - drop.first.y) / drop.screen_delta.y;
         low = max(low, min(a, b));
         high = min(high, max(a, b));
     }
     if low > high {
         return vec2u(1u, 0u);
     }
-    let a = drop.first.x + drop.way.x * low;
-    let b = drop.first.x + drop.way.x * high;
+    let a = drop.first.x + drop.screen_delta.x * low;
+    let b = drop.first.x + drop.screen_delta.x * high;
     let columns = tiles_within(min(a, b) - drop.reach, max(a, b) + drop.reach, width);
     if columns.x > columns.y {
         return columns;
@@ -88,7 +88,7 @@ fn tiles_columns(drop: DropsDrop, row: u32, edge: u32, width: u32) -> vec2u {
 }
 
 // No fewer tiles of an edge than a drop may touch.
-fn tiles_bound(drop: DropsDrop, edge: u32, size: vec2u) -> u32 {
+fn tiles_bound(drop: ScreenDrop, edge: u32, size: vec2u) -> u32 {
     let rows = tiles_rows(drop, edge, size);
     if rows.x > rows.y {
         return 0u;
@@ -96,7 +96,7 @@ fn tiles_bound(drop: DropsDrop, edge: u32, size: vec2u) -> u32 {
     let across = (size.x + edge - 1u) / edge;
     // Of each row of tiles the path covers what it is slanted, and its own width.
     let reached = f32(edge) + 2.0 * drop.reach;
-    let slanted = min(abs(drop.way.x), reached * abs(drop.way.x) / max(abs(drop.way.y), 1.0e-3));
+    let slanted = min(abs(drop.screen_delta.x), reached * abs(drop.screen_delta.x) / max(abs(drop.screen_delta.y), 1.0e-3));
     let columns = min(slanted + 2.0 * drop.reach, f32(size.x)) / f32(edge) + 3.0;
     return (rows.y + 1u - rows.x) * min(u32(columns), across);
 }
@@ -313,7 +313,7 @@ fn main_tiles_seen(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgr
     }
     let drop = tiles_drops[index];
     let rows = tiles_rows(drop, 1u, tiles_frame.size);
-    let end = drop.first.x + drop.way.x;
+    let end = drop.first.x + drop.screen_delta.x;
     let columns = tiles_within(min(drop.first.x, end) - drop.reach, max(drop.first.x, end) + drop.reach, tiles_frame.size.x);
     var seen = select(0.0, -1.0, rows.x > rows.y);
     for (var row = rows.x; row <= rows.y && seen == 0.0; row += 1u) {

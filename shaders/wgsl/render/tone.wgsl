@@ -44,11 +44,6 @@ const TONE_PRIMARIES = mat3x3f(
     0.23096993, -0.3413194, 1.7076147,
 );
 
-// Luminance of linear BT.709.
-fn tone_luminance(color: vec3f) -> f32 {
-    return dot(color, vec3f(0.2126, 0.7152, 0.0722));
-}
-
 // A color of no channel below 0, less what a surface of gloss reflects of white surroundings.
 fn tone_lifted(color: vec3f) -> vec3f {
     let least = min(min(color.x, color.y), color.z);
@@ -88,7 +83,7 @@ fn tone_linear(lab: vec3f) -> vec3f {
 
 // A color within the display: one that is not is mixed with gray of its luminance, as little as that takes.
 fn tone_within(color: vec3f) -> vec3f {
-    let gray = clamp(tone_luminance(color), 0.0, 1.0);
+    let gray = clamp(color_luminance(color), 0.0, 1.0);
     let low = min(min(color.x, color.y), color.z);
     let high = max(max(color.x, color.y), color.z);
     var below = 1.0;

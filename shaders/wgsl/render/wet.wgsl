@@ -105,7 +105,7 @@ fn wet_exposure(surface: Surface, wet: RenderWet) -> f32 {
     }
     let storage = WET_SMOOTH_STORAGE + (1.0 - WET_SMOOTH_STORAGE) * surface.porosity;
     let wetness = wet_fraction(wet.before, wet.kept, wet.since, flux / storage);
-    if wetness < WET_LEAST {
+    if wetness < WET_MIN {
         return 0.0;
     }
     let start = surface.position + surface.facet * render_frame.nearest;

@@ -70,12 +70,12 @@ fn splash_crown(drop: EyeDrop, normal: vec3f) -> EyeDrop {
         || splash_parameter(splash_frame.strength, drop.diameter, toward) <= SPLASH_THRESHOLD {
         return crown;
     }
-    let duration = min(SPLASH_RISE_TIMES * drop.diameter / toward / SPLASH_RISE_SHARE, SPLASH_LONGEST);
+    let duration = min(SPLASH_RISE_TIMES * drop.diameter / toward / SPLASH_RISE_SHARE, SPLASH_MAX_S);
     if age < 0.0 || age >= duration {
         return crown;
     }
     let chance = rng_unit(rng_draw(vec2u(drop.id_low, drop.id ^ drop.id_low), 0u, 0u, SPLASH_SIZE).x);
-    let random = SPLASH_SMALLEST + (SPLASH_LARGEST - SPLASH_SMALLEST) * chance;
+    let random = SPLASH_MIN_SIZE + (SPLASH_MAX_SIZE - SPLASH_MIN_SIZE) * chance;
     let radius = splash_frame.radius * drop.diameter * sqrt(sqrt(drop.diameter)) * random;
     let offset = drop.offset + drop.velocity * drop.present.y
         + vec3f(0.0, radius * splash_middle(age / duration), 0.0);

@@ -2,10 +2,10 @@
 
 use downpour_gpu::{ComputeKernel, Gpu, GpuError, invocation_index};
 use downpour_math::pyramid::{PyramidLevel, PyramidRounding, pyramid_append, pyramid_levels};
-use downpour_math::{ops, packing, rng};
+use downpour_math::{color, equirect, octant, ops, packing, rng};
 use downpour_shaders::common;
 
-use crate::Domain::{AnyWord, Made, Uniform};
+use crate::Domain::{AnyWord, Made, Uniform, Unit3};
 use crate::compare::{Cpu, Gpu as FromGpu, POISON};
 use crate::function::Run;
 use crate::signature::WordKind;
@@ -70,6 +70,35 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 "an inverse square root (2 ulp + division 2.5 ulp) of a sum that is at least 1/3",
             ),
             |a| packing::packing_octahedral_decode(a.f32s()).words(),
+        ),
+        FunctionCase::new(
+            "packing_octahedral_texel",
+            &common::PACKING,
+            // The texel itself is checked over the whole map and up to a map beyond each edge.
+            &[Made(|r| vec![1 + r[0] % 64, (r[1] % 192).wrapping_sub(64), (r[2] % 192).wrapping_sub(64)])],
+            INTEGERS,
+            |a| packing::packing_octahedral_texel(a.u32(), a.u32() as i32, a.u32() as i32).words(),
+        ),
+        FunctionCase::new(
+            "color_luminance",
+            &common::COLOR,
+            &[Uniform(0.0, 4.0), Uniform(0.0, 4.0), Uniform(0.0, 4.0)],
+            Tol::relative(1.0e-6, 0.0, "a sum of products that a GPU may fuse"),
+            |a| color::color_luminance(a.f32s()).words(),
+        ),
+        FunctionCase::new(
+            "octant_turns",
+            &common::OCTANT,
+            &[Uniform(0.0, 1.0)],
+            Tol::absolute(5.0e-8, "a polynomial up to 1/8 that a GPU may fuse"),
+            |a| octant::octant_turns(a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "equirect_coordinates",
+            &common::EQUIRECT,
+            &[Unit3],
+            Tol::absolute(2.0e-4, "atan2 (4096 ulp) of angles up to pi, over 2 pi"),
+            |a| equirect::equirect_coordinates(a.f32s()).words(),
         ),
     ]
 }

@@ -21,7 +21,7 @@ use downpour_shaders::render::glass::{BLADE, GLASS_PICTURE, GLASS_PICTURE_KERNEL
 use downpour_shaders::render::rain::COMPOSE_KERNEL;
 use downpour_trace::data::RenderFrame;
 use downpour_trace::scene::SceneView;
-use downpour_trace::stage::Stage;
+use downpour_trace::stage::FrameScene;
 use downpour_weather::{Loaded, Weather};
 use glam::{Vec2, Vec3};
 
@@ -240,7 +240,7 @@ fn pane(keys: &str) -> GlassPicture {
         drop_model: None,
         warnings: Vec::new(),
     };
-    let stage = Stage::new(&weather, &loaded, 0.0).expect("a stage");
+    let stage = FrameScene::new(&weather, &loaded, 0.0).expect("a stage");
     let mut pane = WetPane::new(&weather, &stage.viewpoint, 0.0).expect("a lattice").expect("a pane");
     pane.advance(0.0).expect("time");
     let frame = RenderFrame::new(&stage.data, &stage.viewpoint, SIZE, 1, 0, 0).expect("a frame");
@@ -278,7 +278,14 @@ fn case(gpu: &Gpu, keys: &str) -> Result<Run, GpuError> {
     let [plate, rain] = [gpu.storage_buffer("plate", &plate)?, gpu.storage_buffer("rain", &rain)?];
     let environment = gpu.storage_buffer("environment map", &capture)?;
     let seen = BehindGlass { plate: &plate, rain: &rain, environment: &environment };
-    let made = GlassRenderer::new(gpu)?.through(&glass, &seen)?;
+    let renderer = GlassRenderer::new(gpu)?;
+    let first = renderer.through(&glass, &seen)?;
+    let buffers = renderer.buffers_made();
+    let made = renderer.through(&glass, &seen)?;
+    assert!(
+        made == first && renderer.buffers_made() == buffers,
+        "a like picture takes the buffers of the one before"
+    );
     Ok(Run {
         arguments: (0..SIZE[0] * SIZE[1])
             .map(|i| [i % SIZE[0], i / SIZE[0]].map(|c| (c as f32).to_bits()).to_vec())

@@ -6,8 +6,7 @@ use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_render::camera::{Camera, Viewpoint};
 use downpour_render::host::{
     DepthRange, HostEnvironment, HostEnvironmentFrame, HostPlateFrame, host_blend_color, host_blend_corner,
-    host_environment_coordinates, host_environment_position, host_plate, host_plate_distance,
-    host_radiance_checked,
+    host_environment_position, host_plate, host_plate_distance, host_radiance_checked,
 };
 use downpour_shaders::render::host::{
     HOST_BLEND, HOST_ENVIRONMENT, HOST_ENVIRONMENT_KERNEL, HOST_PLATE, HOST_PLATE_KERNEL, HOST_RADIANCE,
@@ -80,13 +79,6 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 let camera = bytemuck::cast::<[f32; 16], Camera>(a.f32s());
                 host_environment_position(&camera, Vec3::from(a.f32s())).to_array().words()
             },
-        ),
-        FunctionCase::new(
-            "host_environment_coordinates",
-            &HOST_ENVIRONMENT,
-            &[Unit3],
-            Tol::absolute(2.0e-4, "atan2 (4096 ulp) of angles up to pi, over 2 pi"),
-            |a| host_environment_coordinates(Vec3::from(a.f32s())).to_array().words(),
         ),
         FunctionCase::new("host_blend_corner", &HOST_BLEND, &[Below(3)], Tol::exact("small integers"), |a| {
             host_blend_corner(a.u32()).words()

@@ -9,7 +9,6 @@ use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_render::camera::Viewpoint;
 use downpour_render::gpu::RainPipeline;
 use downpour_render::picture::compose_pixel;
-use downpour_render::rain::drops_mask::drops_mask_right;
 use downpour_render::rain::light::{DropLightForm, DropLightOptions};
 use downpour_render::rain::medium::fog::medium_fog_depth;
 use downpour_render::rain::streak::streak_weight;
@@ -18,14 +17,14 @@ use downpour_render::rain::streak_cell::{
 };
 use downpour_render::rain::streak_span::{StreakSpan, streak_span, streak_span_time};
 use downpour_render::rain::{
-    DropMasks, DropsDrop, EnvironmentMap, Exposure, EyeMotion, MediumOptions, PanePlane, Rain, RainMedium,
-    RainOptions, RefractionForm, StreakColor, StreakProfiles, StreakSamples, TemporalResponse,
+    DropMasks, EnvironmentMap, Exposure, EyeMotion, MediumOptions, PanePlane, Rain, RainMedium, RainOptions,
+    RefractionForm, ScreenDrop, StreakColor, StreakProfiles, StreakSamples, TemporalResponse,
 };
 use downpour_shaders::render::medium::{
     MEDIUM, MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL,
 };
 use downpour_shaders::render::rain::{
-    COMPOSE, COMPOSE_KERNEL, DROPS_KERNEL, DROPS_MASK, STREAK, STREAK_CELL, STREAK_LIGHT_KERNEL, STREAK_RAYS,
+    COMPOSE, COMPOSE_KERNEL, DROPS_KERNEL, STREAK, STREAK_CELL, STREAK_LIGHT_KERNEL, STREAK_RAYS,
     STREAK_RAYS_KERNEL, STREAK_SPAN, STREAK_TABLE_KERNEL,
 };
 use downpour_shaders::render::scene::TRACE_KERNEL;
@@ -40,7 +39,7 @@ use glam::{DVec3, Vec3, Vec4};
 
 use super::drop_light::atlas;
 use super::scene::scene;
-use crate::Domain::{Made, Uniform, Unit3};
+use crate::Domain::{Made, Uniform};
 use crate::compare::{Cpu, Gpu as FromGpu, POISON};
 use crate::function::Run;
 use crate::kept::kept;
@@ -398,7 +397,7 @@ fn weights(random: [u32; 4]) -> Vec<u32> {
 }
 
 /// Words of a drop.
-const DROP: usize = size_of::<DropsDrop>() / 4;
+const DROP: usize = size_of::<ScreenDrop>() / 4;
 
 /// A drop that moves by some of its radii, nearer, away or neither.
 fn moving(random: [u32; 4]) -> Vec<u32> {
@@ -406,12 +405,12 @@ fn moving(random: [u32; 4]) -> Vec<u32> {
     let slope = 0.03 * unit(random[0]) + 1.0e-4;
     let moves = slope * (0.1 + 20.0 * unit(random[1]) * unit(random[1]));
     let turn = 6.0 * unit(random[2]);
-    let drop = DropsDrop {
+    let drop = ScreenDrop {
         slope,
         half_extent: 1.0 + 0.3 * unit(random[2] ^ random[0]),
         along: [moves * ops::cos(turn), moves * ops::sin(turn)],
         depth_ratio: 0.5 + 1.5 * unit(random[3]),
-        ..DropsDrop::default()
+        ..ScreenDrop::default()
     };
     bytemuck::cast_slice(bytemuck::bytes_of(&drop)).to_vec()
 }
@@ -474,13 +473,6 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 let span = StreakSpan { before, after, first, last, parallel, funnel };
                 streak_span_time(&span, a.f32()).words()
             },
-        ),
-        FunctionCase::new(
-            "drops_mask_right",
-            &DROPS_MASK,
-            &[Unit3],
-            Tol::relative(1.0e-6, 1.0e-7, "a square root and a division (2.5 ulp)"),
-            |a| drops_mask_right(Vec3::from(a.f32s())).to_array().words(),
         ),
         FunctionCase::new(
             "streak_cell_position",

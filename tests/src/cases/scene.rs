@@ -8,8 +8,8 @@ use downpour_shaders::render::brdf::BRDF;
 use downpour_shaders::render::path::PATH_LATTICE;
 use downpour_shaders::render::scatter::SCATTER;
 use downpour_shaders::render::scene::{
-    EMITTER, SCENE, SCENE_BLENDED, SCENE_DOUBLE_SIDED, SCENE_MASKED, SCENE_UNLIT, SKY, SKYLIGHT,
-    SKYLIGHT_KERNEL, TEXTURE, TRACE_KERNEL,
+    EMITTER, SCENE, SCENE_BLENDED, SCENE_DOUBLE_SIDED, SCENE_MASKED, SCENE_UNLIT, SKYLIGHT, SKYLIGHT_KERNEL,
+    TEXTURE, TRACE_KERNEL,
 };
 use downpour_trace::brdf::{
     brdf_direct, brdf_distribution, brdf_environment, brdf_fresnel, brdf_masking, brdf_visibility,
@@ -25,7 +25,6 @@ use downpour_trace::scatter::{
     scatter_above, scatter_alpha, scatter_chance, scatter_gloss, scatter_hemisphere, scatter_tangent,
 };
 use downpour_trace::scene::{SceneView, scene_alpha, scene_disk, scene_softness};
-use downpour_trace::sky::sky_coordinates;
 use downpour_trace::sky_light::SkyLight;
 use downpour_trace::skylight::{skylight_film, skylight_hat, skylight_lobe};
 use downpour_trace::texture::texture_wrap;
@@ -103,13 +102,6 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 let (i, n) = (a.u32() as i32, a.u32() as i32);
                 texture_wrap(i, n, a.u32() != 0, a.u32() != 0).map(|i| i as u32).words()
             },
-        ),
-        FunctionCase::new(
-            "sky_coordinates",
-            &SKY,
-            &[Unit3],
-            Tol::absolute(7.0e-4, "atan2 (4096 ulp of up to pi, over 2 pi)").with_outliers(2.0e-2),
-            |a| sky_coordinates(vec3(a)).to_array().words(),
         ),
         FunctionCase::new("brdf_masking", &BRDF, &[alpha, cosine], FORMULA, |a| {
             brdf_masking(a.f32(), a.f32()).words()

@@ -7,7 +7,7 @@ use downpour::render::rain::drop_model;
 use downpour::scene::{Budget, scene::Texture};
 use downpour::shower::Shower;
 use downpour::trace::puddle::PuddleMap;
-use downpour::trace::stage::{CameraChoice, Stage};
+use downpour::trace::stage::{CameraChoice, FrameScene};
 use downpour::trace::wet_ground::WetGround;
 use downpour::weather::Observer;
 
@@ -41,8 +41,9 @@ impl CheckArguments {
         self.input.check()?;
         let input = doing("reading", false, || self.input.read(&mut Budget::default()))?;
         let streaks = self.streaks.read(&input.weather)?;
-        let stage =
-            doing("setting the scene", false, || Stage::new(&input.weather, &input.loaded, self.input.time))?;
+        let stage = doing("setting the scene", false, || {
+            FrameScene::new(&input.weather, &input.loaded, self.input.time)
+        })?;
         say_missing(&input.weather, &input.loaded, &stage, stream::message);
         let mut entries = scene(&input, &stage);
         entries.extend(light(&input));
@@ -71,7 +72,7 @@ fn count(key: &'static str, label: &'static str, number: usize) -> Entry {
     Entry::new(key, label, Datum::Count(number as u64), "")
 }
 
-fn scene(input: &Input, stage: &Stage) -> Vec<Entry> {
+fn scene(input: &Input, stage: &FrameScene) -> Vec<Entry> {
     use Datum::{Computed, Triple, Word};
     let scene = &input.loaded.scene;
     let playing: Vec<&str> = input
@@ -188,7 +189,7 @@ fn motion(input: &Input) -> Result<Vec<Entry>, Failure> {
 }
 
 /// Water on the ground.
-fn water(input: &Input, stage: &Stage) -> Result<Vec<Entry>, Failure> {
+fn water(input: &Input, stage: &FrameScene) -> Result<Vec<Entry>, Failure> {
     let ground = WetGround::new(&input.weather, &input.loaded, stage, 0.0)?;
     let sum = |of: fn(&PuddleMap) -> f32| {
         ground.iter().flat_map(WetGround::maps).map(|map| f64::from(of(map))).sum::<f64>()
@@ -216,7 +217,7 @@ fn water(input: &Input, stage: &Stage) -> Result<Vec<Entry>, Failure> {
 }
 
 /// Pane in front of the camera, and its memory.
-fn pane(input: &Input, stage: &Stage, first_s: f64) -> Result<(Vec<Entry>, u64), Failure> {
+fn pane(input: &Input, stage: &FrameScene, first_s: f64) -> Result<(Vec<Entry>, u64), Failure> {
     let Some(wet) = WetPane::new(&input.weather, &stage.viewpoint, first_s)? else {
         return Ok((
             vec![Entry::new("pane", "pane in front of the camera", Datum::Unbounded("none"), "")],

@@ -6,7 +6,7 @@ use clap::Args;
 use downpour::Source;
 use downpour::render::camera::check_size;
 use downpour::scene::Budget;
-use downpour::trace::stage::Stage;
+use downpour::trace::stage::FrameScene;
 use downpour::weather::{Loaded, Observer, Weather};
 use glam::DVec3;
 
@@ -87,7 +87,7 @@ pub(crate) fn rate_text(weather: &Weather) -> String {
 }
 
 /// Prints the parts of a scene that were dropped, repaired or missing.
-pub(crate) fn say_missing(weather: &Weather, loaded: &Loaded, stage: &Stage, say: impl Fn(&str)) {
+pub(crate) fn say_missing(weather: &Weather, loaded: &Loaded, stage: &FrameScene, say: impl Fn(&str)) {
     say_warnings(&weather.name, &loaded.warnings, &say);
     say_cores(weather, &say);
     if stage.left_out > 0 {

@@ -7,7 +7,7 @@ use downpour::render::file::write_png;
 use downpour::render::wind_picture::{WindPicture, WindPlane, WindSlice, draw_wind};
 use downpour::scene::Budget;
 use downpour::shower::{Shower, Still};
-use downpour::trace::stage::Stage;
+use downpour::trace::stage::FrameScene;
 use downpour::weather::Weather;
 use downpour::wind::primitive::velocity;
 use downpour::wind::turbulence::wind_turbulence_velocity;
@@ -142,7 +142,7 @@ impl WindArguments {
             return Ok(None);
         }
         let input = self.input()?;
-        let stage = Stage::new(&input.weather, &input.loaded, self.time)?;
+        let stage = FrameScene::new(&input.weather, &input.loaded, self.time)?;
         let field = Shower::new(&input.weather)?.wind_field(&Still(&stage), self.time)?;
         Ok(field.map(|field| (field, stage.origin.as_vec3())))
     }

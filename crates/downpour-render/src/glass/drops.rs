@@ -10,6 +10,7 @@ use downpour_lattice::glass::motion::{
 };
 use downpour_lattice::glass::ridge::glass_ridge_is;
 use downpour_lattice::glass::{Glass, GlassError, GlassOptions, GlassState};
+use downpour_math::bins::Bins;
 use downpour_math::ops::f64 as ops;
 use downpour_math::rng::{rng_draw, rng_unit, seed_words};
 use glam::{DVec2, IVec2};
@@ -84,31 +85,19 @@ pub(super) fn binned(options: &GlassOptions, state: &GlassState, above: u32) -> 
     let [columns, rows] = size.map(|edge| ((edge / BIN_M).ceil() as u32).max(1));
     let count = (columns * rows) as usize;
     let bin = |at: f64, most: u32| ((at / BIN_M).max(0.0) as u32).min(most - 1);
-    let touched = |drop: &GlassPictureDrop| {
+    let touched = |index: u32, each: &mut dyn FnMut(usize)| {
+        let drop = &drops[index as usize];
         let reach = f64::from(drop.reach());
         let [x, y] = drop.center.map(f64::from);
         let (left, right) = (bin(x - reach, columns), bin(x + reach, columns));
         let (top, bottom) = (bin(y - reach, rows), bin(y + reach, rows));
-        (top..=bottom)
-            .flat_map(move |row| (left..=right).map(move |column| (row * columns + column) as usize))
-    };
-    let mut bins = vec![0u32; count + 1];
-    for bin in drops.iter().flat_map(touched) {
-        bins[bin + 1] += 1;
-    }
-    let mut first = count as u32 + 1;
-    for start in &mut bins {
-        first += *start;
-        *start = first;
-    }
-    let mut next = bins.clone();
-    bins.resize(first as usize, 0);
-    for (index, drop) in (0u32..).zip(&drops) {
-        for bin in touched(drop) {
-            bins[next[bin] as usize] = index;
-            next[bin] += 1;
+        for row in top..=bottom {
+            (left..=right).for_each(|column| each((row * columns + column) as usize));
         }
-    }
+    };
+    let Bins { starts, items } = Bins::new(count, drops.len() as u32, touched);
+    // The lists are behind their indices, in one buffer.
+    let bins = starts.iter().map(|start| count as u32 + 1 + start).chain(items).collect();
     Ok(Binned { drops, bins, columns, rows, per_meter: 1.0 / BIN_M })
 }
 

@@ -6,12 +6,12 @@ use downpour_shaders::render::glass::{GLASS_PICTURE_BLADES, GLASS_PICTURE_LEVELS
 
 use super::blade::GlassPictureBlade;
 use super::light::GlassPictureLight;
-use super::picture::Look;
+use super::picture::PaneTracer;
 use super::water::GlassPictureDrop;
 use crate::camera::Camera;
 
 /// Samples of a pixel, at most.
-const MOST_SAMPLES: u32 = 1024;
+const MAX_SAMPLES: u32 = 1024;
 
 /// Angle between neighbours of a spiral of even density, radians: the golden one.
 const GOLDEN: f32 = 2.399_963_2;
@@ -51,7 +51,7 @@ pub struct GlassPictureFrame {
     pub focus: u32,
     /// The reflectance of water.
     pub fresnel: u32,
-    /// Light of the eye's side, of that of the surroundings.
+    /// Light of the eye's side, relative to that of the environment.
     pub room: f32,
     /// Samples of a pixel.
     pub samples: u32,
@@ -106,7 +106,7 @@ impl GlassPicture {
     /// has them.
     #[must_use]
     pub fn through(&self, behind: &[[f32; 4]], capture: &[[f32; 4]]) -> Vec<[f32; 3]> {
-        Look { glass: self, behind: &self.with_levels(behind), capture }.picture()
+        PaneTracer { glass: self, behind: &self.with_levels(behind), capture }.picture()
     }
 
     /// A picture with its coarser levels.
@@ -140,7 +140,7 @@ pub(super) fn levels([width, height]: [u32; 2]) -> ([[u32; 4]; GLASS_PICTURE_LEV
 /// Places of the lens and of the pixel. A lens of no size has a quarter of the samples.
 pub(super) fn samples(grid: u32, lens: f32) -> Vec<[f32; 4]> {
     let open = lens > 0.0;
-    let count = (grid * grid * if open { 16 } else { 4 }).clamp(1, MOST_SAMPLES);
+    let count = (grid * grid * if open { 16 } else { 4 }).clamp(1, MAX_SAMPLES);
     let share = |x: f32| x - x.floor();
     (0..count)
         .map(|k| {

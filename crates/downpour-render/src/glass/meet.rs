@@ -3,7 +3,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::picture::Look;
+use super::picture::PaneTracer;
 use super::water::{glass_picture_water_cap, glass_picture_water_leave, glass_picture_water_normal};
 
 /// Surface of the pane that a ray meets.
@@ -27,7 +27,7 @@ pub fn glass_picture_spline(t: f32, which: i32) -> Vec2 {
     }
 }
 
-impl Look<'_> {
+impl PaneTracer<'_> {
     /// Wetness of a cell, 0 to 1.
     fn glass_picture_wetness(&self, column: i32, row: i32) -> f32 {
         let [width, height] = self.glass.frame.wet_size;

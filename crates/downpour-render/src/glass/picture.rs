@@ -35,7 +35,7 @@ struct Ray {
 
 /// All that a pixel is made of.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Look<'a> {
+pub(super) struct PaneTracer<'a> {
     pub(super) glass: &'a GlassPicture,
     /// The picture behind the pane with its distances, all levels.
     pub(super) behind: &'a [[f32; 4]],
@@ -48,7 +48,7 @@ fn refract(incident: Vec3, normal: Vec3, eta: f32) -> Vec4 {
     Vec3::from(direction).extend(squared)
 }
 
-impl Look<'_> {
+impl PaneTracer<'_> {
     /// The whole picture, rows from the top.
     pub(super) fn picture(&self) -> Vec<[f32; 3]> {
         let frame = &self.glass.frame;
@@ -76,7 +76,8 @@ impl Look<'_> {
     fn glass_picture_inside(&self, v: Vec3) -> Vec3 {
         let aside = v.truncate() * self.glass.frame.water;
         let out = aside.extend(-(1.0 - aside.dot(aside)).max(1.0e-4).sqrt());
-        self.glass_picture_round(self.glass_picture_world(out), GLASS_PICTURE_MIRROR) * self.glass.frame.room
+        self.glass_picture_environment(self.glass_picture_world(out), GLASS_PICTURE_MIRROR)
+            * self.glass.frame.room
     }
 
     /// Fraction of the light that the outer surface reflects: that of water under a normal, or that of dry glass.
@@ -134,7 +135,7 @@ impl Look<'_> {
         }
         if room > 0.0 {
             let mirror = self.glass_picture_world(Vec3::new(d.x, d.y, -d.z));
-            sum += self.glass_picture_round(mirror, GLASS_PICTURE_MIRROR) * (room * first);
+            sum += self.glass_picture_environment(mirror, GLASS_PICTURE_MIRROR) * (room * first);
             let away = if back.z > 0.0 { Vec3::new(back.x, back.y, -back.z) } else { back };
             sum += self.glass_picture_inside(away) * (rest - first).max(0.0);
         }
@@ -148,10 +149,10 @@ impl Look<'_> {
         let upright = (1.0 - turned * turned).sqrt();
         let outside = 0.5 - 0.5 * upright;
         let to_room = self.glass_picture_world((aside * turned).extend(-upright));
-        let room = self.glass_picture_round(to_room, GLASS_PICTURE_DIFFUSE) * self.glass.frame.room;
+        let room = self.glass_picture_environment(to_room, GLASS_PICTURE_DIFFUSE) * self.glass.frame.room;
         let side = if turned > 0.0 { 1.0 } else { -1.0 };
         let to_scene = self.glass_picture_world((aside * (side * FRAC_1_SQRT_2)).extend(FRAC_1_SQRT_2));
-        room * (1.0 - outside) + self.glass_picture_round(to_scene, GLASS_PICTURE_DIFFUSE) * outside
+        room * (1.0 - outside) + self.glass_picture_environment(to_scene, GLASS_PICTURE_DIFFUSE) * outside
     }
 
     /// Radiance of the wipers along a ray that meets the pane at a position, in a direction of the pane, at a fraction of the exposure;
@@ -167,7 +168,8 @@ impl Look<'_> {
                 let mut sum = self.glass_picture_diffuse(aside, part.x) * (part.y * (1.0 - first));
                 if frame.room > 0.0 {
                     let mirror = self.glass_picture_world(Vec3::new(d.x, d.y, -d.z));
-                    sum += self.glass_picture_round(mirror, GLASS_PICTURE_MIRROR) * (frame.room * first);
+                    sum +=
+                        self.glass_picture_environment(mirror, GLASS_PICTURE_MIRROR) * (frame.room * first);
                 }
                 return Some(sum);
             }

@@ -2,13 +2,13 @@
 //! Twin of a part of `shaders/wgsl/render/glass_picture.wgsl`.
 
 use downpour_math::ops;
-use downpour_math::packing::packing_octahedral_encode;
+use downpour_math::packing::{packing_octahedral_encode, packing_octahedral_texel};
 use downpour_shaders::render::glass::GLASS_PICTURE_FAR;
 use glam::{IVec2, UVec2, Vec2, Vec3, Vec4};
 
-use super::picture::Look;
+use super::picture::PaneTracer;
 
-impl Look<'_> {
+impl PaneTracer<'_> {
     /// A texel of a level of the picture; the nearest where there is none.
     pub(super) fn glass_picture_texel(&self, level: u32, column: i32, row: i32) -> Vec4 {
         let [width, height, first, _] = self.glass.frame.levels[level as usize];
@@ -18,21 +18,11 @@ impl Look<'_> {
     }
 
     /// A texel of a level of the capture. Beyond an edge, the octahedral map continues mirrored about the edge's middle.
-    fn glass_picture_round_texel(&self, level: u32, column: i32, row: i32) -> Vec4 {
+    fn glass_picture_environment_texel(&self, level: u32, column: i32, row: i32) -> Vec4 {
         let whole = self.glass.frame.capture_size;
         let size = whole >> level;
-        let edge = size as i32;
-        let (mut x, mut y) = (column, row);
-        if x < 0 || x >= edge {
-            x = x.clamp(0, edge - 1);
-            y = edge - 1 - y;
-        }
-        if y < 0 || y >= edge {
-            y = y.clamp(0, edge - 1);
-            x = edge - 1 - x;
-        }
+        let [x, y] = packing_octahedral_texel(size, column, row);
         let first = 4 * (whole * whole - size * size) / 3;
-        let (x, y) = (x.clamp(0, edge - 1) as u32, y.clamp(0, edge - 1) as u32);
         Vec4::from(self.capture[(first + y * size + x) as usize])
     }
 
@@ -56,7 +46,7 @@ impl Look<'_> {
             let cell = low.as_ivec2() + step;
             if fraction > 0.0 {
                 let texel = if of_capture {
-                    self.glass_picture_round_texel(level, cell.x, cell.y)
+                    self.glass_picture_environment_texel(level, cell.x, cell.y)
                 } else {
                     self.glass_picture_texel(level, cell.x, cell.y)
                 };
@@ -81,7 +71,7 @@ impl Look<'_> {
     }
 
     /// Radiance of the environment map in a direction, averaged over a footprint in radians.
-    pub(super) fn glass_picture_round(&self, direction: Vec3, footprint: f32) -> Vec3 {
+    pub(super) fn glass_picture_environment(&self, direction: Vec3, footprint: f32) -> Vec3 {
         let position = Vec2::from(packing_octahedral_encode(direction.to_array())) * 0.5 + 0.5;
         self.glass_picture_at(true, position, footprint / self.glass.frame.capture_texel)
     }
@@ -117,7 +107,7 @@ impl Look<'_> {
         } else {
             let square = Vec2::from(packing_octahedral_encode(direction.to_array()));
             let texel = (square * 0.5 + 0.5) * frame.capture_size as f32;
-            self.glass_picture_round_texel(0, texel.x as i32, texel.y as i32).w
+            self.glass_picture_environment_texel(0, texel.x as i32, texel.y as i32).w
         };
         let to = direction + from_eye / distance.clamp(0.1, GLASS_PICTURE_FAR);
         let position = self.glass_picture_project(to);
@@ -131,7 +121,7 @@ impl Look<'_> {
             sum = self.glass_picture_at(false, at, texels) * fraction;
         }
         if fraction < 1.0 {
-            sum += self.glass_picture_round(to, footprint) * (1.0 - fraction);
+            sum += self.glass_picture_environment(to, footprint) * (1.0 - fraction);
         }
         sum
     }

@@ -7,7 +7,7 @@ use downpour_weather::GlowFilter;
 use super::{Glow, GlowKernel};
 
 /// Fraction of light below which nothing is spread.
-const LEAST_FRACTION: f64 = 1.0e-7;
+const MIN_FRACTION: f64 = 1.0e-7;
 
 /// Standard deviation of the glare of Kawase's passes per axis, degrees, times the width.
 const KAWASE_DEG: f64 = 0.5;
@@ -93,7 +93,7 @@ impl GlowPlan {
         let Some(last) = levels.last() else { return };
         let fractions = kernel.fractions(&variances(take.size, &levels), pixel);
         let sum: f64 = fractions.iter().sum();
-        if sum * f64::from(take.fraction.max(take.extinction)) < LEAST_FRACTION {
+        if sum * f64::from(take.fraction.max(take.extinction)) < MIN_FRACTION {
             return;
         }
         let is_added = self.is_added();

@@ -1,6 +1,8 @@
 //! A picture through a pane of glass, on a GPU.
 
-use downpour_gpu::{ComputeKernel, Gpu, GpuError, wgpu};
+use std::sync::{Mutex, PoisonError};
+
+use downpour_gpu::{BufferPool, BufferSource as _, ComputeKernel, Gpu, GpuError, wgpu};
 use downpour_shaders::common::PYRAMID_KERNEL;
 use downpour_shaders::render::glass::GLASS_PICTURE_KERNEL;
 use downpour_shaders::render::rain::COMPOSE_KERNEL;
@@ -10,10 +12,15 @@ use crate::glass::{GlassPicture, GlassPictureFrame};
 /// Samples of a dispatch, at most: a submission must stay far below the time after which a driver resets.
 const SAMPLES_PER_DISPATCH: u32 = 1 << 22;
 
-/// The pipelines of a pane: made once, used for any number of pictures.
-#[derive(Clone, Debug)]
+/// Label of the picture that is read.
+const MADE: &str = "picture through glass";
+
+/// The pipelines of a pane and its buffers: made once, used for any number of pictures.
+#[derive(Debug)]
 pub struct GlassRenderer {
     gpu: Gpu,
+    /// Buffers of the pictures, one picture at a time.
+    pool: Mutex<BufferPool>,
     compose: ComputeKernel,
     pyramid: ComputeKernel,
     kernel: ComputeKernel,
@@ -39,6 +46,8 @@ impl GlassRenderer {
         let kernel = |kernel| ComputeKernel::new(gpu, kernel, &[]);
         Ok(Self {
             gpu: gpu.clone(),
+            // The picture is read whole: it has the size that it needs.
+            pool: Mutex::new(BufferPool::new(gpu).with_given_away(&[MADE])),
             compose: kernel(&COMPOSE_KERNEL)?,
             pyramid: kernel(&PYRAMID_KERNEL)?,
             kernel: kernel(&GLASS_PICTURE_KERNEL)?,
@@ -46,19 +55,24 @@ impl GlassRenderer {
     }
 
     /// The plate through the rain, with its coarser levels.
-    fn behind(&self, glass: &GlassPicture, seen: &BehindGlass<'_>) -> Result<wgpu::Buffer, GpuError> {
+    fn behind(
+        &self,
+        pool: &BufferPool,
+        glass: &GlassPicture,
+        seen: &BehindGlass<'_>,
+    ) -> Result<wgpu::Buffer, GpuError> {
         let gpu = &self.gpu;
         let [width, height] = glass.frame.camera.size();
         let levels = glass.coarser_levels();
         let texels = levels.last().map_or(u64::from(width) * u64::from(height), |last| {
             u64::from(last.target_texel) + u64::from(last.size[0]) * u64::from(last.size[1])
         });
-        let behind = gpu.empty_buffer("picture behind glass", texels * 16, wgpu::BufferUsages::STORAGE)?;
-        let size = gpu.uniform_buffer("size of the picture behind glass", &[width, height, 0, 0])?;
+        let behind = pool.buffer("picture behind glass", texels * 16, wgpu::BufferUsages::STORAGE)?;
+        let size = pool.uniform("size of the picture behind glass", &[width, height, 0, 0])?;
         let composed = self.compose.bind(gpu, &[&size, seen.plate, seen.rain, &behind])?;
         let mut bound = Vec::new();
         for level in &levels {
-            let uniform = gpu.uniform_buffer("level of the picture behind glass", level)?;
+            let uniform = pool.uniform("level of the picture behind glass", level)?;
             bound.push((self.pyramid.bind(gpu, &[&uniform, &behind])?, level.size));
         }
         let groups = |[columns, rows]: [u32; 2]| [columns.div_ceil(8), rows.div_ceil(8), 1];
@@ -68,6 +82,12 @@ impl GlassRenderer {
         Ok(behind)
     }
 
+    /// Number of buffers that were created so far; a like picture creates none.
+    #[must_use]
+    pub fn buffers_made(&self) -> u64 {
+        self.pool.lock().unwrap_or_else(PoisonError::into_inner).made()
+    }
+
     /// The picture through the pane: what [`GlassPicture::through`] makes on the CPU.
     ///
     /// # Errors
@@ -75,19 +95,22 @@ impl GlassRenderer {
     pub fn through(&self, glass: &GlassPicture, seen: &BehindGlass<'_>) -> Result<Vec<[f32; 3]>, GpuError> {
         let gpu = &self.gpu;
         let frame = &glass.frame;
-        let drops = gpu.storage_buffer("drops on glass", &glass.drops)?;
-        let bins = gpu.storage_buffer("bins of drops on glass", &glass.bins)?;
-        let wet = gpu.storage_buffer("wetness of glass", &glass.wet)?;
-        let lens = gpu.storage_buffer("places of the lens", &glass.lens)?;
-        let lights = gpu.storage_buffer("lamps before glass", &glass.lights)?;
-        let behind = self.behind(glass, seen)?;
+        let pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
+        // The picture before has been read: nothing uses its buffers any more.
+        pool.begin_frame();
+        let drops = pool.storage("drops on glass", &glass.drops)?;
+        let bins = pool.storage("bins of drops on glass", &glass.bins)?;
+        let wet = pool.storage("wetness of glass", &glass.wet)?;
+        let lens = pool.storage("points of the lens", &glass.lens)?;
+        let lights = pool.storage("lamps before glass", &glass.lights)?;
+        let behind = self.behind(&pool, glass, seen)?;
         let pixels = u64::from(frame.camera.width) * u64::from(frame.camera.height);
-        let made = gpu.empty_buffer("picture through glass", pixels * 16, wgpu::BufferUsages::STORAGE)?;
+        let made = pool.buffer(MADE, pixels * 16, wgpu::BufferUsages::STORAGE)?;
         let row = frame.camera.width.max(1).saturating_mul(frame.samples.max(1));
         let rows = (SAMPLES_PER_DISPATCH / row).max(8).next_multiple_of(8);
         for first_row in (0..frame.camera.height).step_by(rows as usize) {
             let band = GlassPictureFrame { first_row, ..*frame };
-            let uniform = gpu.uniform_buffer("glass picture frame", &band)?;
+            let uniform = pool.uniform("glass picture frame", &band)?;
             let buffers = [&uniform, &drops, &bins, &wet, &lens, &behind, seen.environment, &made, &lights];
             let bindings = self.kernel.bind(gpu, &buffers)?;
             let groups =
@@ -96,6 +119,8 @@ impl GlassRenderer {
             // One submission at a time: software drivers queue without end.
             gpu.wait()?;
         }
-        Ok(gpu.read::<[f32; 4]>(&made)?.into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
+        let seen = gpu.read::<[f32; 4]>(&made)?.into_iter().map(|[r, g, b, _]| [r, g, b]).collect();
+        pool.give_back(MADE, made);
+        Ok(seen)
     }
 }

@@ -15,7 +15,7 @@ use downpour_shaders::render::rain::{
 use crate::rain::RainOptions;
 use crate::rain::profiles::{ProfilesFrame, StreakProfiles};
 use crate::rain::project::{ProjectFrame, project_frequencies};
-use crate::rain::{DropsDrop, StreakPath};
+use crate::rain::{ScreenDrop, StreakPath};
 
 /// Kernels of the profiles in the order in which they run, with their bindings.
 const PROFILES: [(&Kernel, &[u32]); 4] = [
@@ -142,7 +142,7 @@ impl ProjectPipeline {
         let words = |label, count: u32, size: usize| {
             buffers.buffer(label, u64::from(count.max(1)) * size as u64, storage)
         };
-        let list = words("drops", room, size_of::<DropsDrop>())?;
+        let list = words("drops", room, size_of::<ScreenDrop>())?;
         let rows = words("positions of drops", room * (1 + project.has_axes), 16)?;
         let uniform = buffers.uniform("project frame", project)?;
         let bound = [&uniform, falling.drops, masks, falling.frequencies, &list, &rows];
@@ -193,7 +193,7 @@ impl ProjectPass<'_> {
 #[doc(hidden)]
 #[derive(Debug)]
 pub struct ProjectFound {
-    pub list: Vec<DropsDrop>,
+    pub list: Vec<ScreenDrop>,
     pub rows: Vec<[f32; 4]>,
     pub streaks: Vec<[f32; 4]>,
     pub classes: Vec<StreakPath>,

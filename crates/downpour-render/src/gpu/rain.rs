@@ -19,7 +19,7 @@ use crate::rain::light::{DropLightTable, DropLights};
 use crate::rain::profiles::{MAX_ENTRIES, MAX_RAYS, ProfilesFrame};
 use crate::rain::project::ProjectFrame;
 use crate::rain::tiles::TilesFrame;
-use crate::rain::{DropMasks, DropsDrop, Rain, RainOptions, StreakRay};
+use crate::rain::{DropMasks, Rain, RainOptions, ScreenDrop, StreakRay};
 
 /// The pipelines of drops: made once, used for any number of pictures.
 #[derive(Clone, Debug)]
@@ -93,7 +93,7 @@ impl RainPipeline {
         let limits = self.gpu.device().limits();
         let bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         // Lamps light 64 drops per workgroup, of which there are 65 535 along one axis.
-        (bytes / size_of::<DropsDrop>() as u64).min(64 * 65_535) as u32
+        (bytes / size_of::<ScreenDrop>() as u64).min(64 * 65_535) as u32
     }
 
     /// Brings the masks to the device.

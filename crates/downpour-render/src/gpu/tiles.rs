@@ -57,7 +57,7 @@ impl TilesPipeline {
         })
     }
 
-    /// Makes ready to list drops ([`DropsDrop`](crate::rain::DropsDrop)) that are on the device, before a plate (radiance and distance).
+    /// Makes ready to list drops ([`ScreenDrop`](crate::rain::ScreenDrop)) that are on the device, before a plate (radiance and distance).
     ///
     /// # Errors
     /// [`GpuError::OverLimit`] if the lists are larger than the device allows, or what else the GPU says.

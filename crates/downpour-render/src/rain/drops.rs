@@ -2,10 +2,11 @@
 //! method is described.
 
 use downpour_math::ops;
+use downpour_math::packing::packing_unpack_half;
 use downpour_shaders::render::drop_light::DROP_ATLAS_ROWS;
 use downpour_shaders::render::medium::{MEDIUM_SKY, MEDIUM_SKY_REACH};
 use downpour_shaders::render::rain::{
-    DROPS_ATLAS_TAPS, DROPS_BENT, DROPS_BENT_MOST, DROPS_LOOP, DROPS_OPAQUE, DROPS_SMALL_GRID, DROPS_STILL,
+    DROPS_ATLAS_TAPS, DROPS_BENT, DROPS_LOOP, DROPS_MAX_BENT, DROPS_OPAQUE, DROPS_SMALL_GRID, DROPS_STILL,
     DROPS_TABLE, PROJECT_DIAMETERS, STREAK_FINE, STREAK_GOLDEN, STREAK_LATTICE, STREAK_WHITE,
 };
 use glam::{Vec2, Vec3, Vec4};
@@ -13,19 +14,18 @@ use rayon::prelude::*;
 
 use super::drops_atlas::{DropsAtlas, DropsAtlasStreak, drops_atlas_streak};
 use super::drops_frame::DropsView;
-use super::drops_mask::{drops_mask_right, drops_mask_unit};
+use super::drops_mask::drops_mask_unit;
 use super::drops_shade::DropsShade;
 use super::environment::EnvironmentMap;
-use super::glint::drop_glint_rousseau;
+use super::glint::{drop_glint_right, drop_glint_rousseau};
 use super::streak::{
-    DropsDrop, StreakChord, streak_chord, streak_cover, streak_depth, streak_mask_position, streak_nearest,
+    ScreenDrop, StreakChord, streak_chord, streak_cover, streak_depth, streak_mask_position, streak_nearest,
     streak_time, streak_weight,
 };
 use super::streak_lookup::StreakTable;
 use super::tiles::TileLists;
 use super::{DropMasks, Rain, StreakProfiles, StreakRay, streak_light, streak_rays};
 use crate::camera::Camera;
-use crate::halves::unpack;
 
 /// Position of a ray on the plane at distance 1 through a drop's center.
 #[must_use]
@@ -42,33 +42,33 @@ pub fn drops_shift(line: u32) -> f32 {
 
 /// The phase of the mode (2,0), in turns, where a passing drop is at a fraction of its way.
 #[must_use]
-pub fn drops_turns(drop: &DropsDrop, way: f32) -> f32 {
+pub fn drops_turns(drop: &ScreenDrop, way: f32) -> f32 {
     drop.mode_phase[2] + drop.cycles[0] * streak_time(drop.depth_ratio, way)
 }
 
 /// True for a splash, whose masks are behind those of the diameters.
 #[must_use]
-pub fn drops_is_splash(drop: &DropsDrop) -> bool {
+pub fn drops_is_splash(drop: &ScreenDrop) -> bool {
     drop.mask_index[0] >= PROJECT_DIAMETERS as f32
 }
 
 /// Position on the plane at distance 1 through a drop's center, along the right and up of its view, of a place on the picture.
-pub(super) fn drops_position(camera: &Camera, drop: &DropsDrop, x: f32, y: f32) -> Vec2 {
+pub(super) fn drops_position(camera: &Camera, drop: &ScreenDrop, x: f32, y: f32) -> Vec2 {
     let towards = Vec3::from(drop.towards);
-    let right = drops_mask_right(towards);
+    let right = drop_glint_right(towards);
     let lean = drops_on_plane(towards, camera.camera_ray(x, y));
     Vec2::new(lean.dot(right), lean.dot(right.cross(towards)))
 }
 
 /// The depth of a drop before a pixel, m.
-pub(super) fn drops_depth(camera: &Camera, drop: &DropsDrop, x: u32, y: u32) -> f32 {
+pub(super) fn drops_depth(camera: &Camera, drop: &ScreenDrop, x: u32, y: u32) -> f32 {
     let way = streak_nearest(drop, drops_position(camera, drop, x as f32 + 0.5, y as f32 + 0.5));
     drop.distance * streak_depth(drop.depth_ratio, streak_time(drop.depth_ratio, way))
 }
 
 /// The part of a drop at a depth that is before a scene, 0 to 1: one that meets a surface goes into it over its own size; a splash
 /// stands on one, which hides it only from behind.
-pub(super) fn drops_before(drop: &DropsDrop, scene: f32, depth: f32) -> f32 {
+pub(super) fn drops_before(drop: &ScreenDrop, scene: f32, depth: f32) -> f32 {
     let sunk = (scene - depth) / (2.0 * drop.slope * drop.distance);
     (sunk + if drops_is_splash(drop) { 1.5 } else { 0.5 }).clamp(0.0, 1.0)
 }
@@ -77,7 +77,7 @@ pub(super) fn drops_before(drop: &DropsDrop, scene: f32, depth: f32) -> f32 {
 #[must_use]
 pub fn drops_bent(direction: Vec3) -> f32 {
     let square = direction.x * direction.x + direction.y * direction.y;
-    (square * DROPS_BENT).min(DROPS_BENT_MOST)
+    (square * DROPS_BENT).min(DROPS_MAX_BENT)
 }
 
 /// Data that the kernel reads.
@@ -101,7 +101,7 @@ impl Buffers<'_> {
 
     /// Light of lamps in the form of Rousseau 2006 at a position of a drop's mask, by the normal there, which halves the angle
     /// between the eye and what is mirrored: what it is more than the mean over the drop.
-    fn drops_facing(&self, index: u32, drop: &DropsDrop, x: f32, y: f32) -> Vec3 {
+    fn drops_facing(&self, index: u32, drop: &ScreenDrop, x: f32, y: f32) -> Vec3 {
         let row = self.drops_glint_row(index);
         let mut light = Vec3::ZERO;
         // An atlas has streaks, other forms have glints.
@@ -109,7 +109,7 @@ impl Buffers<'_> {
             return light;
         }
         let towards = Vec3::from(drop.towards);
-        let right = drops_mask_right(towards);
+        let right = drop_glint_right(towards);
         let up = right.cross(towards);
         let turned = drops_mask_unit(self.view.drops_mask_at(drop.mask_index, x, y).reflected + Vec3::Z);
         let normal = right * turned.x + up * turned.y - towards * turned.z;
@@ -140,7 +140,7 @@ impl Buffers<'_> {
     }
 
     /// Light of lamps on a passing drop by the streaks of an atlas, for as long as it passes a position on the plane.
-    fn drops_streaks(&self, index: u32, drop: &DropsDrop, chord: &StreakChord, at: Vec2) -> Vec3 {
+    fn drops_streaks(&self, index: u32, drop: &ScreenDrop, chord: &StreakChord, at: Vec2) -> Vec3 {
         let row = self.drops_glint_row(index);
         let part = (chord.high - chord.low) * 0.5;
         let turns = drops_turns(drop, streak_nearest(drop, at));
@@ -154,12 +154,12 @@ impl Buffers<'_> {
 
     /// Light of lamps on a drop that is not sampled, as a radiance over all of it: with an atlas bright and dark along its
     /// path.
-    fn drops_beads(&self, index: u32, drop: &DropsDrop, x: u32, y: u32) -> Vec3 {
+    fn drops_beads(&self, index: u32, drop: &ScreenDrop, x: u32, y: u32) -> Vec3 {
         let mut light = Vec4::from(self.drops_glint_row(index)[0]).truncate();
         if self.view.frame.atlas == 0 || drop.spread > 1.0 {
             return light;
         }
-        let way = Vec2::from(drop.way);
+        let way = Vec2::from(drop.screen_delta);
         let square = way.dot(way).max(1.0);
         let at = (Vec2::new(x as f32, y as f32) + 0.5 - Vec2::from(drop.first)).dot(way) / square;
         let pixel = 1.0 / square.sqrt();
@@ -176,14 +176,14 @@ impl Buffers<'_> {
     }
 
     /// A still drop over a pixel: radiance times coverage, and coverage. Below a pixel it is its mean radiance.
-    fn drops_still(&self, index: u32, drop: &DropsDrop, x: u32, y: u32) -> Vec4 {
+    fn drops_still(&self, index: u32, drop: &ScreenDrop, x: u32, y: u32) -> Vec4 {
         let small = drop.grid == 0;
         let spread = streak_cover(drop, x, y);
         if small && spread <= 0.0 {
             return Vec4::ZERO;
         }
         let towards = Vec3::from(drop.towards);
-        let right = drops_mask_right(towards);
+        let right = drop_glint_right(towards);
         let up = right.cross(towards);
         let n = if small { DROPS_SMALL_GRID } else { drop.grid };
         let extent = drop.half_extent * drop.slope;
@@ -238,7 +238,7 @@ impl Buffers<'_> {
     }
 
     /// The part of a chord that passes during the exposure, by the weighted mean over its middle points.
-    fn drops_chord(&self, index: u32, drop: &DropsDrop, chord: &StreakChord, ray: Vec3) -> Vec4 {
+    fn drops_chord(&self, index: u32, drop: &ScreenDrop, chord: &StreakChord, ray: Vec3) -> Vec4 {
         let frame = self.view.frame;
         let shade = DropsShade {
             towards: drops_mask_unit(ray),
@@ -261,7 +261,7 @@ impl Buffers<'_> {
     }
 
     /// The streak of a drop over a pixel: radiance times coverage, and coverage.
-    fn drops_streak(&self, index: u32, drop: &DropsDrop, x: u32, y: u32) -> Vec4 {
+    fn drops_streak(&self, index: u32, drop: &ScreenDrop, x: u32, y: u32) -> Vec4 {
         let size = Vec2::new(self.view.frame.camera.width as f32, self.view.frame.camera.height as f32);
         if drop.grid == 0 {
             let cover = streak_cover(drop, x, y);
@@ -273,7 +273,7 @@ impl Buffers<'_> {
             return (self.table.streak_lookup_mean(drop.shape, position) + light).extend(1.0) * cover;
         }
         let towards = Vec3::from(drop.towards);
-        let right = drops_mask_right(towards);
+        let right = drop_glint_right(towards);
         let up = right.cross(towards);
         let shift = Vec2::new(drops_shift(y), drops_shift(x));
         let mut sum = Vec4::ZERO;
@@ -359,7 +359,7 @@ impl Buffers<'_> {
         let scene = self.clean[index][3];
         let lamps = self.medium.get(index).copied().map_or(Vec4::ZERO, Vec4::from);
         // Mean distance of the medium's light of lamps, and its optical depth.
-        let [mean, depth] = unpack(lamps.w.to_bits());
+        let [mean, depth] = packing_unpack_half(lamps.w.to_bits());
         let lamps = lamps.truncate();
         let direction = drops_mask_unit(self.view.frame.camera.camera_ray(x as f32 + 0.5, y as f32 + 0.5));
         let span = medium.medium_span(direction);

@@ -1,7 +1,7 @@
 //! The capture between its texels and its levels. Twin of `shaders/wgsl/render/drops_capture.wgsl`.
 
 use downpour_math::ops;
-use downpour_math::packing::packing_octahedral_encode;
+use downpour_math::packing::{packing_octahedral_encode, packing_octahedral_texel};
 use downpour_shaders::render::rain::{DROPS_DIRECTION, DROPS_SHIFT};
 use glam::{Vec2, Vec3, Vec4};
 
@@ -13,19 +13,12 @@ impl DropsView<'_> {
     pub(super) fn drops_capture_texel(&self, level: u32, column: i32, row: i32) -> Vec3 {
         let whole = self.frame.capture_size;
         let size = whole >> level;
-        let edge = size as i32;
-        let (mut x, mut y) = (column, row);
-        if self.frame.form == DROPS_DIRECTION {
-            if x < 0 || x >= edge {
-                x = x.clamp(0, edge - 1);
-                y = edge - 1 - y;
-            }
-            if y < 0 || y >= edge {
-                y = y.clamp(0, edge - 1);
-                x = edge - 1 - x;
-            }
-        }
-        let (x, y) = (x.clamp(0, edge - 1) as u32, y.clamp(0, edge - 1) as u32);
+        let last = size as i32 - 1;
+        let [x, y] = if self.frame.form == DROPS_DIRECTION {
+            packing_octahedral_texel(size, column, row)
+        } else {
+            [column.clamp(0, last) as u32, row.clamp(0, last) as u32]
+        };
         let first = 4 * (whole * whole - size * size) / 3;
         Vec4::from(self.capture[(first + y * size + x) as usize]).truncate()
     }

@@ -5,7 +5,7 @@ use glam::{Vec2, Vec3, Vec4};
 
 use super::drops_frame::DropsView;
 use super::glint::{drop_glint_image, drop_glint_pixel, drop_glint_right, drop_glint_unpack};
-use super::streak::{DropsDrop, streak_mean};
+use super::streak::{ScreenDrop, streak_mean};
 
 impl DropsView<'_> {
     /// Light of lamps that has no position on a drop, as a radiance over all of it: the mean less its glints. `row` is the light on
@@ -21,7 +21,7 @@ impl DropsView<'_> {
     }
 
     /// Position on the picture of a point of a drop's disk, pixels from its middle: the disk is drawn out to the drop's oval.
-    fn drops_glint_offset(&self, drop: &DropsDrop, position: Vec2) -> Vec2 {
+    fn drops_glint_offset(&self, drop: &ScreenDrop, position: Vec2) -> Vec2 {
         let towards = Vec3::from(drop.towards);
         let right = drop_glint_right(towards);
         let up = right.cross(towards);
@@ -32,7 +32,7 @@ impl DropsView<'_> {
     }
 
     /// Light of a drop's glints in a pixel, as a radiance over all of the pixel.
-    pub(super) fn drops_glint_light(&self, row: &[[f32; 4]], drop: &DropsDrop, x: u32, y: u32) -> Vec3 {
+    pub(super) fn drops_glint_light(&self, row: &[[f32; 4]], drop: &ScreenDrop, x: u32, y: u32) -> Vec3 {
         let mut light = Vec3::ZERO;
         if self.frame.atlas > 0 {
             return light;
@@ -51,7 +51,7 @@ impl DropsView<'_> {
             } else {
                 let width = ((DROPS_GLINT_BOX * image).min(2.0 * room) * pixels).max(1.0);
                 let from_pixel = Vec2::from(drop.first) + offset - (corner + 0.5);
-                drop.fraction * streak_mean(from_pixel, drop.way.into(), width, drop.weights)
+                drop.fraction * streak_mean(from_pixel, drop.screen_delta.into(), width, drop.weights)
             };
             light += Vec4::from(*glint).truncate() * (drop.area * part);
         }

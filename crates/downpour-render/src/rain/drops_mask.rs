@@ -53,14 +53,6 @@ fn drops_mask_mean(sum: DropsTexel) -> DropsTexel {
     }
 }
 
-/// The right of the view of a drop whose axis is the world's vertical.
-#[must_use]
-pub fn drops_mask_right(towards: Vec3) -> Vec3 {
-    let sideways = Vec3::new(-towards.z, 0.0, towards.x);
-    let level = sideways.dot(sideways);
-    if level > 1.0e-12 { sideways / level.max(1.0e-20).sqrt() } else { Vec3::X }
-}
-
 impl DropsView<'_> {
     /// A texel of a mask.
     fn drops_mask_texel(&self, layer: u32, column: i32, row: i32) -> DropsTexel {

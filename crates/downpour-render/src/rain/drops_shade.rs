@@ -5,7 +5,8 @@ use downpour_shaders::render::rain::{DROPS_SHIFT, DROPS_STRAIGHT};
 use glam::{Vec2, Vec3, Vec4};
 
 use super::drops_frame::DropsView;
-use super::drops_mask::{DropsTexel, drops_mask_right};
+use super::drops_mask::DropsTexel;
+use super::glint::drop_glint_right;
 
 /// A drop as a ray meets it.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +35,7 @@ impl DropsView<'_> {
         if texel.coverage <= 0.0 {
             return Vec4::ZERO;
         }
-        let right = drops_mask_right(drop.towards);
+        let right = drop_glint_right(drop.towards);
         let up = right.cross(drop.towards);
         // A sphere's deviation 2 (asin q - asin(q / n)) and its derivative, for the footprint.
         let q = ((x * x + y * y) * drop.half_extent * drop.half_extent).min(0.98);

@@ -4,11 +4,11 @@
 //! `light` leads from the drop to the lamp, `towards` from the eye to the drop; directions have length 1. Positions on the
 //! disk are in radii, along the right and the up of the view.
 
+use downpour_math::octant::octant_turns;
 use downpour_shaders::render::drop_light::{
     DROP_GLINT_AXIS, DROP_GLINT_MASK, DROP_GLINT_NUMBER, DROP_GLINT_RANGE, DROP_GLINT_STEPS, DROP_GLINT_TINY,
     DROP_GLINT_WIDTH_MASK, DROP_GLINT_WIDTHS, DROP_LIGHT_EXTERNAL, DROP_LIGHT_INTERNAL,
 };
-use downpour_shaders::render::specimen::SPECIMEN_TURN;
 use glam::{Vec2, Vec3};
 
 /// Right axis of the view of a drop, horizontal; +x where the view is vertical. Up is `right.cross(toward)`.
@@ -35,12 +35,7 @@ pub fn drop_glint_angle(light: Vec3, towards: Vec3) -> f32 {
     // Sine and cosine of half the angle, twice: exact at both ends, where a cosine of the angle would not be.
     let (s, c) = (apart.dot(apart).sqrt(), along.dot(along).sqrt());
     let t = s.min(c) / s.max(c).max(DROP_GLINT_TINY);
-    let square = t * t;
-    let mut sum = SPECIMEN_TURN[8];
-    for n in (0..8).rev() {
-        sum = sum * square + SPECIMEN_TURN[n];
-    }
-    let octant = sum * t;
+    let octant = octant_turns(t);
     4.0 * if c < s { 0.25 - octant } else { octant }
 }
 

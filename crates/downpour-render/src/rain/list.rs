@@ -10,7 +10,7 @@ use super::light::{DropLightForm, DropLightOptions, DropLights};
 use super::medium::{MediumFrame, MediumLight, lamps_of};
 use super::profiles::StreakProfiles;
 use super::project::{Projected, Projector, project_axis, project_row};
-use super::streak::DropsDrop;
+use super::streak::ScreenDrop;
 use super::tiles::tiles_within;
 use super::{DropMasks, RainOptions};
 use crate::RenderError;
@@ -21,7 +21,7 @@ use crate::plate::Lighting;
 struct Shown {
     /// Its place among the drops that were given.
     given: u32,
-    drop: DropsDrop,
+    drop: ScreenDrop,
     velocity: Vec3,
     row: [f32; 4],
 }
@@ -38,7 +38,7 @@ pub struct Rain {
     /// Profiles of moving drops in the streak radiance table.
     pub profiles: StreakProfiles,
     /// The drops on the picture, in the order in which they were given.
-    pub list: Vec<DropsDrop>,
+    pub list: Vec<ScreenDrop>,
     /// The drops of `list` as lamps light them: place relative to the scene's origin, and radius, m. For an atlas then their
     /// axes and ids.
     pub rows: Vec<[f32; 4]>,
@@ -61,7 +61,7 @@ impl Rain {
         let environment = EnvironmentFrame::new(camera, options);
         let size = camera.size();
         let shown = shown(camera, eye, drops, masks, options);
-        let mut list: Vec<DropsDrop> = shown.iter().map(|shown| shown.drop).collect();
+        let mut list: Vec<ScreenDrop> = shown.iter().map(|shown| shown.drop).collect();
         let mut rows: Vec<[f32; 4]> = shown.iter().map(|shown| shown.row).collect();
         let radii: Vec<f32> = rows.iter().map(|row| row[3]).collect();
         let medium = options.medium.class();
@@ -153,7 +153,7 @@ fn shown(
 
 /// Distance of a drop, m; 0 where the scene of a picture hides all of it, below 0 where it is not on the picture.
 #[must_use]
-pub fn seen(drop: &DropsDrop, clean: &[[f32; 4]], size: [u32; 2]) -> f32 {
+pub fn seen(drop: &ScreenDrop, clean: &[[f32; 4]], size: [u32; 2]) -> f32 {
     let Some([left, right, top, bottom]) = pixels(drop, size) else { return -1.0 };
     let width = size[0] as usize;
     let is_seen = (top as usize..=bottom as usize).any(|row| {
@@ -172,11 +172,11 @@ pub fn nearest_first(distances: &[f32]) -> Vec<u32> {
 }
 
 /// The pixels that a drop may touch: first and last column, first and last row; `None` where it touches none.
-fn pixels(drop: &DropsDrop, [width, height]: [u32; 2]) -> Option<[u32; 4]> {
+fn pixels(drop: &ScreenDrop, [width, height]: [u32; 2]) -> Option<[u32; 4]> {
     if drop.reach <= 0.0 {
         return None;
     }
-    let (from, way) = (Vec2::from(drop.first), Vec2::from(drop.way));
+    let (from, way) = (Vec2::from(drop.first), Vec2::from(drop.screen_delta));
     let (low, high) = (from.min(from + way) - drop.reach, from.max(from + way) + drop.reach);
     let [left, right] = tiles_within(low.x, high.x, width)?;
     let [top, bottom] = tiles_within(low.y, high.y, height)?;

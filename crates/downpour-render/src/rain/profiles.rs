@@ -6,13 +6,13 @@ use downpour_math::ops;
 use downpour_math::rng::seed_words;
 use downpour_shaders::render::rain::{
     DROPS_LOOP, DROPS_STILL, DROPS_TABLE, PROFILES_ALONG, PROFILES_COLUMNS, PROFILES_FINE, PROFILES_KINDS,
-    PROFILES_LEAST, PROFILES_LEVELS, PROFILES_MOST, PROFILES_PER_TURN, PROFILES_ROWS_FOR_TWO,
-    PROFILES_TURNED, PROFILES_WIDTHS, PROJECT_CLASSES, STREAK_SUMS, STREAK_TURN,
+    PROFILES_LEVELS, PROFILES_MAX, PROFILES_MIN, PROFILES_PER_TURN, PROFILES_ROWS_FOR_TWO, PROFILES_TURNED,
+    PROFILES_WIDTHS, PROJECT_CLASSES, STREAK_SUMS, STREAK_TURN,
 };
 
 use super::exposure::Exposure;
 use super::shapes;
-use super::streak::DropsDrop;
+use super::streak::ScreenDrop;
 use super::streak_light::UNITS;
 use super::streak_lookup::STREAK_MEAN_ENTRIES;
 use super::streak_path::StreakPath;
@@ -109,19 +109,19 @@ pub type Sizes = [u32; 4];
 
 /// True if a drop is a streak that is sampled.
 #[must_use]
-pub fn profiles_is_sampled(drop: &DropsDrop) -> bool {
+pub fn profiles_is_sampled(drop: &ScreenDrop) -> bool {
     drop.reach > 0.0 && drop.kind == DROPS_TABLE && drop.grid > 0
 }
 
 /// True if a drop shows the mean of its class.
 #[must_use]
-pub fn profiles_is_mean(drop: &DropsDrop) -> bool {
+pub fn profiles_is_mean(drop: &ScreenDrop) -> bool {
     drop.reach > 0.0 && drop.kind != DROPS_STILL && drop.grid == 0
 }
 
 /// True if a drop oscillates.
 #[must_use]
-pub fn profiles_oscillates(drop: &DropsDrop) -> bool {
+pub fn profiles_oscillates(drop: &ScreenDrop) -> bool {
     drop.mode_phase[0] != 0.0 || drop.mode_phase[1] != 0.0
 }
 
@@ -134,7 +134,7 @@ pub fn profiles_rows_of(rows: u32) -> u32 {
 /// Sizes of the profile of a streak, by its width and its turns: rays are the finer the wider the streak is on the picture. The
 /// light of a streak of a pixel or two has to be right as a whole, that of a wide one along and across, too.
 #[must_use]
-pub fn profiles_sized(drop: &DropsDrop) -> Sizes {
+pub fn profiles_sized(drop: &ScreenDrop) -> Sizes {
     // The drop's area on the picture is that of its mask.
     let width = 2.0 * (drop.area / std::f32::consts::PI).sqrt();
     let mut kind = 0;
@@ -146,9 +146,9 @@ pub fn profiles_sized(drop: &DropsDrop) -> Sizes {
     let along = (x * x + y * y).sqrt() * (1.0 + span.before + span.after);
     let turned = ops::atan2(along, 1.0) / PROFILES_TURNED;
     let turns = drop.cycles[1] * (span.last - span.first);
-    let (turns, least) = if profiles_oscillates(drop) { (turns, PROFILES_LEAST[kind]) } else { (0.0, 1.0) };
+    let (turns, least) = if profiles_oscillates(drop) { (turns, PROFILES_MIN[kind]) } else { (0.0, 1.0) };
     let wanted = (turns * PROFILES_PER_TURN[kind]).max(turned).ceil();
-    let rows = 1 + wanted.clamp(least, PROFILES_MOST[kind]) as u32;
+    let rows = 1 + wanted.clamp(least, PROFILES_MAX[kind]) as u32;
     [rows, PROFILES_COLUMNS[kind] as u32, profiles_rows_of(rows), PROFILES_FINE[kind] as u32]
 }
 
@@ -189,7 +189,7 @@ impl StreakProfiles {
     /// wanted in any case.
     #[must_use]
     pub fn new(
-        drops: &mut [DropsDrop],
+        drops: &mut [ScreenDrop],
         radii: &[f32],
         masks: &DropMasks,
         exposure: &Exposure,
@@ -202,7 +202,7 @@ impl StreakProfiles {
     /// As [`StreakProfiles::new`], with the room that a frame has.
     #[must_use]
     pub fn with_frame(
-        drops: &mut [DropsDrop],
+        drops: &mut [ScreenDrop],
         radii: &[f32],
         masks: &DropMasks,
         exposure: &Exposure,
@@ -242,7 +242,7 @@ impl StreakProfiles {
     fn place(
         &mut self,
         index: u32,
-        drop: &mut DropsDrop,
+        drop: &mut ScreenDrop,
         sizes: &Sizes,
         shape: StreakPath,
         frame: &ProfilesFrame,

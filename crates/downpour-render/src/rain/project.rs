@@ -19,7 +19,7 @@ use glam::{Vec2, Vec3};
 use super::exposure::{StreakSamples, TemporalResponse};
 use super::glint::drop_glint_right;
 use super::light::DropLightForm;
-use super::streak::DropsDrop;
+use super::streak::ScreenDrop;
 use super::{DropMasks, RainOptions};
 use crate::camera::{Camera, MAX_EXPOSURE_S};
 
@@ -191,7 +191,7 @@ pub fn project_axis(velocity: Vec3, id: u32) -> [f32; 4] {
 #[derive(Clone, Copy, Debug)]
 pub struct Projected {
     /// The drop.
-    pub drop: DropsDrop,
+    pub drop: ScreenDrop,
     /// Velocity relative to the picture, m/s.
     pub velocity: Vec3,
 }
@@ -388,7 +388,7 @@ impl<'a> Projector<'a> {
         let right = drop_glint_right(towards);
         let up = right.cross(towards);
         let [start, end] = path.ends.map(|p| Vec2::new(p.dot(right), p.dot(up)) / p.dot(towards));
-        let shown = DropsDrop {
+        let shown = ScreenDrop {
             towards: towards.into(),
             distance,
             position: camera.camera_project(offset).into(),
@@ -400,7 +400,7 @@ impl<'a> Projector<'a> {
             start: start.into(),
             along: (end - start).into(),
             first: first.into(),
-            way: (last - first).into(),
+            screen_delta: (last - first).into(),
             oval: mask.oval,
             depth_ratio: path.depth_ratio,
             mode_phase: modes.mode_phase,

@@ -7,10 +7,10 @@ use downpour_drop::oscillation::{
 use downpour_shaders::render::rain::STREAK_GAUSS;
 use glam::{Vec2, Vec3};
 
-/// A drop in the picture. The same layout as `DropsDrop` in WGSL.
+/// A drop in the picture. The same layout as `ScreenDrop` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct DropsDrop {
+pub struct ScreenDrop {
     /// Unit vector from the eye to the drop's center at mid-exposure.
     pub towards: [f32; 3],
     /// Distance from the eye in the middle of its path, m.
@@ -34,7 +34,7 @@ pub struct DropsDrop {
     /// `start` on the picture, pixels.
     pub first: [f32; 2],
     /// `along` on the picture, pixels.
-    pub way: [f32; 2],
+    pub screen_delta: [f32; 2],
     /// Half the width and half the height of the oval around its outline, and how far its middle is up, in equivalent
     /// radii.
     pub oval: [f32; 3],
@@ -104,7 +104,7 @@ pub fn streak_weight(weights: [f32; 2], time: f32) -> f32 {
 
 /// Fraction of the path that is nearest to a position on the plane.
 #[must_use]
-pub fn streak_nearest(drop: &DropsDrop, at: Vec2) -> f32 {
+pub fn streak_nearest(drop: &ScreenDrop, at: Vec2) -> f32 {
     let along = Vec2::from(drop.along);
     ((at - Vec2::from(drop.start)).dot(along) / along.dot(along).max(1.0e-20)).clamp(0.0, 1.0)
 }
@@ -127,7 +127,7 @@ pub fn streak_stretch(mode_phase: [f32; 4], turns: [f32; 2], time: f32) -> Vec3 
 
 /// Returns the chord along which a ray through a point of the plane passes the drop.
 #[must_use]
-pub fn streak_chord(drop: &DropsDrop, at: Vec2) -> StreakChord {
+pub fn streak_chord(drop: &ScreenDrop, at: Vec2) -> StreakChord {
     let (start, path) = (Vec2::from(drop.start), Vec2::from(drop.along));
     let way = streak_nearest(drop, at);
     let time = streak_time(drop.depth_ratio, way);
@@ -170,7 +170,7 @@ pub fn streak_chord(drop: &DropsDrop, at: Vec2) -> StreakChord {
 
 /// Position in the mask, in units of half its width, of a position on a chord, in units of half its length.
 #[must_use]
-pub fn streak_mask_position(drop: &DropsDrop, chord: &StreakChord, v: f32) -> Vec2 {
+pub fn streak_mask_position(drop: &ScreenDrop, chord: &StreakChord, v: f32) -> Vec2 {
     let away = Vec2::new(chord.direction.y, -chord.direction.x);
     let at =
         (away * chord.across + chord.direction * (v * chord.half)) * Vec2::new(drop.oval[0], drop.oval[1]);
@@ -231,8 +231,8 @@ pub fn streak_mean(from: Vec2, way: Vec2, width: f32, weights: [f32; 2]) -> f32 
 
 /// Weighted fraction of a pixel that an unsampled drop covers.
 #[must_use]
-pub fn streak_cover(drop: &DropsDrop, x: u32, y: u32) -> f32 {
+pub fn streak_cover(drop: &ScreenDrop, x: u32, y: u32) -> f32 {
     let from = Vec2::from(drop.first) - Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-    let mean = streak_mean(from, Vec2::from(drop.way), drop.spread, drop.weights);
+    let mean = streak_mean(from, Vec2::from(drop.screen_delta), drop.spread, drop.weights);
     (drop.area * drop.fraction * mean).min(1.0)
 }

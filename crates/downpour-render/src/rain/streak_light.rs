@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use super::drops_frame::DropsView;
 use super::drops_mask::drops_mask_unit;
 use super::glint::{drop_glint_right, drop_glint_rousseau};
-use super::streak::DropsDrop;
+use super::streak::ScreenDrop;
 use super::streak_cell::{streak_cell_position, streak_cell_slope, streak_cell_weight};
 use super::streak_path::{StreakPath, streak_path_instant};
 use super::streak_rays::StreakRay;
@@ -199,7 +199,7 @@ fn streak_light_spot(
 }
 
 /// From the eye to a drop's middle in a row of the profile, by the fraction of the rows before it, of length 1.
-fn streak_light_view(drop: &DropsDrop, row: f32) -> Vec3 {
+fn streak_light_view(drop: &ScreenDrop, row: f32) -> Vec3 {
     let towards = Vec3::from(drop.towards);
     let right = drop_glint_right(towards);
     let up = right.cross(towards);
@@ -211,7 +211,7 @@ fn streak_light_view(drop: &DropsDrop, row: f32) -> Vec3 {
 struct Streak<'a> {
     view: DropsView<'a>,
     path: &'a StreakPath,
-    drop: &'a DropsDrop,
+    drop: &'a ScreenDrop,
     exits: &'a [[StreakExit; 4]],
     lamps: &'a [[f32; 4]],
 }
@@ -356,7 +356,7 @@ fn unpacked(rays: &[StreakRay]) -> Vec<[StreakExit; 4]> {
 pub(super) fn light(
     view: DropsView<'_>,
     paths: &[StreakPath],
-    drops: &[DropsDrop],
+    drops: &[ScreenDrop],
     rays: &[StreakRay],
     lamps: &[[f32; 4]],
     table: &mut [[f32; 4]],

@@ -3,7 +3,7 @@
 use downpour_shaders::render::rain::{STREAK_RAYS, STREAK_SUMS};
 use glam::{Vec2, Vec3, Vec4};
 
-use super::streak::{DropsDrop, streak_depth, streak_time, streak_weight};
+use super::streak::{ScreenDrop, streak_depth, streak_time, streak_weight};
 use super::streak_cell::{streak_cell_index, streak_cell_position};
 use super::streak_span::streak_span;
 
@@ -53,7 +53,7 @@ impl StreakTable {
     }
 
     /// Returns the position in a drop's profile for a point of the plane.
-    fn streak_lookup_passage(&self, drop: &DropsDrop, at: Vec2) -> StreakPassage {
+    fn streak_lookup_passage(&self, drop: &ScreenDrop, at: Vec2) -> StreakPassage {
         let first = drop.profile;
         let [rows, columns, profile_rows, fine] = self.entry(first).to_array().map(|n| n as u32);
         let span = streak_span(drop);
@@ -137,7 +137,7 @@ impl StreakTable {
     }
 
     /// A streak at a position of the plane: radiance times the fraction of the exposure in which it is covered, and this fraction.
-    pub(super) fn streak_lookup_shown(&self, drop: &DropsDrop, at: Vec2) -> Vec4 {
+    pub(super) fn streak_lookup_shown(&self, drop: &ScreenDrop, at: Vec2) -> Vec4 {
         let passage = self.streak_lookup_passage(drop, at);
         let (low, high) = (passage.low, passage.high);
         if high <= low {

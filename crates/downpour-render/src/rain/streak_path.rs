@@ -7,7 +7,7 @@ use downpour_mask::wobble::WobbleDrop;
 use glam::{Vec2, Vec3};
 
 use super::glint::drop_glint_right;
-use super::streak::{DropsDrop, streak_depth};
+use super::streak::{ScreenDrop, streak_depth};
 use super::streak_span::{streak_span, streak_span_time};
 
 /// A streak that has a profile, or a class of drops that has a mean. The same layout as `StreakPath` in WGSL.
@@ -65,7 +65,7 @@ pub(super) struct StreakInstant {
 }
 
 /// A drop at the time of a row of its profile, by the fraction of the rows before it.
-pub(super) fn streak_path_instant(drop: &DropsDrop, row: f32) -> StreakInstant {
+pub(super) fn streak_path_instant(drop: &ScreenDrop, row: f32) -> StreakInstant {
     let span = streak_span(drop);
     let time = streak_span_time(&span, row);
     let way = time * drop.depth_ratio / (1.0 - time + time * drop.depth_ratio).max(1.0e-20);
@@ -85,7 +85,7 @@ pub(super) fn streak_path_instant(drop: &DropsDrop, row: f32) -> StreakInstant {
 }
 
 /// The unit vector along the motion on the plane, and the one across it.
-pub(super) fn streak_path_axes(drop: &DropsDrop) -> [Vec2; 2] {
+pub(super) fn streak_path_axes(drop: &ScreenDrop) -> [Vec2; 2] {
     let along = Vec2::from(drop.along);
     let along = along / along.dot(along).sqrt().max(1.0e-20);
     [along, Vec2::new(along.y, -along.x)]
@@ -93,7 +93,7 @@ pub(super) fn streak_path_axes(drop: &DropsDrop) -> [Vec2; 2] {
 
 impl StreakPath {
     /// s2 and s3 at a time.
-    pub(super) fn streak_path_displacement(&self, drop: &DropsDrop, time: f32) -> [f32; 2] {
+    pub(super) fn streak_path_displacement(&self, drop: &ScreenDrop, time: f32) -> [f32; 2] {
         [
             self.amplitudes[0] * drop_oscillation_sine(drop.mode_phase[2] + drop.cycles[0] * time),
             self.amplitudes[1] * drop_oscillation_sine(drop.mode_phase[3] + drop.cycles[1] * time),
@@ -144,7 +144,7 @@ impl StreakPath {
     /// drop: the point on the plane, and the direction.
     pub(super) fn streak_path_line(
         &self,
-        drop: &DropsDrop,
+        drop: &ScreenDrop,
         instant: &StreakInstant,
         point: Vec2,
     ) -> [Vec3; 2] {

@@ -16,7 +16,7 @@ use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::glint::drop_glint_right;
-use super::streak::DropsDrop;
+use super::streak::ScreenDrop;
 use super::streak_cell::streak_cell_position;
 use super::streak_path::{StreakInstant, StreakPath, streak_path_axes, streak_path_instant};
 
@@ -49,7 +49,7 @@ fn streak_rays_beside(instant: &StreakInstant, radius: f32, c: f32, s: f32) -> V
 }
 
 /// A point of the outline at an angle from the motion.
-fn streak_rays_outline(path: &StreakPath, drop: &DropsDrop, instant: &StreakInstant, angle: f32) -> Vec2 {
+fn streak_rays_outline(path: &StreakPath, drop: &ScreenDrop, instant: &StreakInstant, angle: f32) -> Vec2 {
     let [along_axis, across_axis] = streak_path_axes(drop);
     let (c, s) = (ops::cos(angle), ops::sin(angle));
     let way = along_axis * c + across_axis * s;
@@ -100,7 +100,7 @@ fn streak_rays_chord(points: &[Vec2], across: f32) -> Vec2 {
 /// Rays of a row that are traced together.
 struct Rays<'a> {
     path: &'a StreakPath,
-    drop: &'a DropsDrop,
+    drop: &'a ScreenDrop,
     instant: &'a StreakInstant,
     /// Points across and along the motion.
     points: &'a [Vec2],
@@ -187,7 +187,7 @@ fn store<S: Simd>(path: &StreakPath, light: &WobbleLight<Lanes<S>>, rays: &mut [
 }
 
 /// One row of a streak.
-fn row(path: &StreakPath, drop: &DropsDrop, row: u32) -> Row {
+fn row(path: &StreakPath, drop: &ScreenDrop, row: u32) -> Row {
     let instant = streak_path_instant(drop, row as f32 / (path.rows - 1) as f32);
     let step = STREAK_TURN / STREAK_OUTLINE as f32;
     let outline: Vec<Vec2> =
@@ -213,7 +213,7 @@ fn row(path: &StreakPath, drop: &DropsDrop, row: u32) -> Row {
 /// Traces all rows of all paths into the table and the rays, in parallel; the same bits for any number of threads.
 pub(super) fn trace(
     paths: &[StreakPath],
-    drops: &[DropsDrop],
+    drops: &[ScreenDrop],
     jobs: &[[u32; 2]],
     table: &mut [[f32; 4]],
     rays: &mut [StreakRay],

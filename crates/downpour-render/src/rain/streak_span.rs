@@ -4,7 +4,7 @@
 use downpour_shaders::render::rain::{STREAK_SPAN_MAX, STREAK_SPAN_ROOM};
 use glam::Vec2;
 
-use super::streak::{DropsDrop, streak_time};
+use super::streak::{ScreenDrop, streak_time};
 
 /// Path of a streak's profile, and how rays go through its drop.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +25,7 @@ pub struct StreakSpan {
 
 /// The span of a streak.
 #[must_use]
-pub fn streak_span(drop: &DropsDrop) -> StreakSpan {
+pub fn streak_span(drop: &ScreenDrop) -> StreakSpan {
     let ratio = drop.depth_ratio.max(1.0e-6);
     let along = Vec2::from(drop.along);
     let moves = along.dot(along).sqrt().max(1.0e-20);

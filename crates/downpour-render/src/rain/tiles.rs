@@ -3,11 +3,12 @@
 
 use std::cmp::Ordering;
 
+use downpour_math::bins::Bins;
 use downpour_shaders::render::rain::{DROPS_TILE, TILES_EDGES};
 use glam::Vec2;
 use rayon::prelude::*;
 
-use super::streak::DropsDrop;
+use super::streak::ScreenDrop;
 
 /// Drops that the lists of all tiles have room for, by the number of drops: on the mean a streak touches some ten tiles.
 const ROOM_PER_DROP: u32 = 32;
@@ -53,11 +54,11 @@ pub fn tiles_within(low: f32, high: f32, count: u32) -> Option<[u32; 2]> {
 
 /// First and last row of tiles that a drop may touch; `None` if there is none.
 #[must_use]
-pub fn tiles_rows(drop: &DropsDrop, edge: u32, size: [u32; 2]) -> Option<[u32; 2]> {
+pub fn tiles_rows(drop: &ScreenDrop, edge: u32, size: [u32; 2]) -> Option<[u32; 2]> {
     if drop.reach <= 0.0 {
         return None;
     }
-    let (first, way) = (Vec2::from(drop.first), Vec2::from(drop.way));
+    let (first, way) = (Vec2::from(drop.first), Vec2::from(drop.screen_delta));
     let (low, high) = (first.min(first + way) - drop.reach, first.max(first + way) + drop.reach);
     tiles_within(low.x, high.x, size[0])?;
     tiles_within(low.y, high.y, size[1]).map(|rows| rows.map(|row| row / edge))
@@ -65,8 +66,8 @@ pub fn tiles_rows(drop: &DropsDrop, edge: u32, size: [u32; 2]) -> Option<[u32; 2
 
 /// First and last tile of a row of tiles that the path of a drop may touch; `None` if there is none.
 #[must_use]
-pub fn tiles_columns(drop: &DropsDrop, row: u32, edge: u32, width: u32) -> Option<[u32; 2]> {
-    let (first, way, reach) = (Vec2::from(drop.first), Vec2::from(drop.way), drop.reach);
+pub fn tiles_columns(drop: &ScreenDrop, row: u32, edge: u32, width: u32) -> Option<[u32; 2]> {
+    let (first, way, reach) = (Vec2::from(drop.first), Vec2::from(drop.screen_delta), drop.reach);
     let top = (row * edge) as f32 - reach;
     let bottom = ((row + 1) * edge) as f32 + reach;
     // The part of the path that is as high as this row.
@@ -84,9 +85,9 @@ pub fn tiles_columns(drop: &DropsDrop, row: u32, edge: u32, width: u32) -> Optio
 
 /// No fewer tiles of an edge than a drop may touch.
 #[must_use]
-pub fn tiles_bound(drop: &DropsDrop, edge: u32, size: [u32; 2]) -> u32 {
+pub fn tiles_bound(drop: &ScreenDrop, edge: u32, size: [u32; 2]) -> u32 {
     let Some([top, bottom]) = tiles_rows(drop, edge, size) else { return 0 };
-    let [x, y] = drop.way.map(f32::abs);
+    let [x, y] = drop.screen_delta.map(f32::abs);
     // Of each row of tiles the path covers what it is slanted, and its own width.
     let reached = edge as f32 + 2.0 * drop.reach;
     let slanted = x.min(reached * x / y.max(1.0e-3));
@@ -103,13 +104,13 @@ pub fn tiles_edge(totals: &[u64; TILES_EDGES as usize], room: u32) -> u32 {
 
 /// The sort key of a drop: distances are above 0, whose bits are in their order.
 #[must_use]
-pub fn tiles_key(drops: &[DropsDrop], index: u32) -> [u32; 2] {
+pub fn tiles_key(drops: &[ScreenDrop], index: u32) -> [u32; 2] {
     [drops[index as usize].nearest.to_bits(), index]
 }
 
 /// True if a drop comes before another, by their sort keys.
 #[must_use]
-pub fn tiles_is_before(drops: &[DropsDrop], a: [u32; 2], b: [u32; 2]) -> bool {
+pub fn tiles_is_before(drops: &[ScreenDrop], a: [u32; 2], b: [u32; 2]) -> bool {
     let all = |key: [u32; 2]| (key[0], drops[key[1] as usize].id, key[1]);
     all(a) < all(b)
 }
@@ -129,13 +130,13 @@ pub struct TileLists {
 impl TileLists {
     /// The lists of some drops; the same for any number of threads.
     #[must_use]
-    pub fn new(drops: &[DropsDrop], size: [u32; 2]) -> Self {
+    pub fn new(drops: &[ScreenDrop], size: [u32; 2]) -> Self {
         Self::with_room(drops, size, TilesFrame::new(size, drops.len() as u32).room)
     }
 
     /// The lists of some drops, with tiles so large that there is room.
     #[must_use]
-    pub fn with_room(drops: &[DropsDrop], size: [u32; 2], room: u32) -> Self {
+    pub fn with_room(drops: &[ScreenDrop], size: [u32; 2], room: u32) -> Self {
         let mut totals = [0; TILES_EDGES as usize];
         for drop in drops {
             for (k, total) in totals.iter_mut().enumerate() {
@@ -144,30 +145,16 @@ impl TileLists {
         }
         let edge = tiles_edge(&totals, room);
         let [across, down] = size.map(|pixels| pixels.div_ceil(edge));
-        let mut starts = vec![0u32; (across * down) as usize + 1];
-        let touched = |drop: &DropsDrop, each: &mut dyn FnMut(usize)| {
+        let touched = |index: u32, each: &mut dyn FnMut(usize)| {
+            let drop = &drops[index as usize];
             let Some([top, bottom]) = tiles_rows(drop, edge, size) else { return };
             for row in top..=bottom {
                 let Some([left, right]) = tiles_columns(drop, row, edge, size[0]) else { continue };
                 (left..=right).for_each(|column| each((row * across + column) as usize));
             }
         };
-        for drop in drops {
-            touched(drop, &mut |tile| starts[tile + 1] += 1);
-        }
-        let mut sum = 0;
-        for start in &mut starts {
-            sum += *start;
-            *start = sum;
-        }
-        let mut next = starts.clone();
-        let mut lists = vec![0; sum as usize];
-        for (index, drop) in (0u32..).zip(drops) {
-            touched(drop, &mut |tile| {
-                lists[next[tile] as usize] = index;
-                next[tile] += 1;
-            });
-        }
+        let Bins { starts, items: mut lists } =
+            Bins::new((across * down) as usize, drops.len() as u32, touched);
         let mut rest = lists.as_mut_slice();
         let mut all = Vec::with_capacity(starts.len());
         for pair in starts.windows(2) {

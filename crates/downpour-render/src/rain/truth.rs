@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::Rain;
 use super::drops::{drops_before, drops_depth, drops_position};
-use super::streak::{DropsDrop, streak_chord, streak_cover};
+use super::streak::{ScreenDrop, streak_chord, streak_cover};
 use super::tiles::TileLists;
 
 /// Samples along an edge of a pixel, of drops that are not smaller.
@@ -51,7 +51,7 @@ impl Rain {
     }
 
     /// Fraction of a pixel that a drop covers, times the fraction of the exposure for which it does.
-    fn cover(&self, drop: &DropsDrop, x: u32, y: u32) -> f32 {
+    fn cover(&self, drop: &ScreenDrop, x: u32, y: u32) -> f32 {
         if drop.grid == 0 {
             return streak_cover(drop, x, y);
         }

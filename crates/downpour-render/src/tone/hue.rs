@@ -5,11 +5,12 @@
 //! put back to what it was, and it is mixed with gray where the display has no such color. So bright red becomes light red, not orange or
 //! pink. Neutral colors and all below the shoulder have the values of [`tone_neutral`].
 
+use downpour_math::color::color_luminance;
 use downpour_math::ops;
 use downpour_shaders::render::tone::{TONE_HALF_WHITE_STOPS, TONE_MAX_CHANNEL, TONE_START};
 use glam::{Mat3, Vec2, Vec3};
 
-use super::{tone_compressed, tone_lifted, tone_luminance, tone_neutral};
+use super::{tone_compressed, tone_lifted, tone_neutral};
 
 /// Linear BT.709 to the cone responses of Oklab.
 const CONES: Mat3 = Mat3::from_cols_array(&[
@@ -78,7 +79,7 @@ pub fn tone_linear(lab: Vec3) -> Vec3 {
 /// even where the display's colors of a hue have a dent.
 #[must_use]
 pub fn tone_within(color: Vec3) -> Vec3 {
-    let gray = tone_luminance(color).clamp(0.0, 1.0);
+    let gray = color_luminance(color.into()).clamp(0.0, 1.0);
     let (low, high) = (color.min_element(), color.max_element());
     let below = if low < 0.0 { gray / (gray - low) } else { 1.0 };
     let above = if high > 1.0 { (1.0 - gray) / (high - gray) } else { 1.0 };

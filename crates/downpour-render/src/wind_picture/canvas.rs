@@ -1,5 +1,6 @@
 //! Pixels in linear light, and letters of 5 x 7 dots.
 
+use downpour_math::color::linear_to_srgb;
 use downpour_math::ops;
 
 /// Columns of a letter with the gap behind it.
@@ -83,8 +84,7 @@ impl Canvas {
 /// IEC 61966-2-1.
 fn encoded(light: f32) -> u8 {
     let light = light.clamp(0.0, 1.0);
-    let value = if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * ops::pow(light, 1.0 / 2.4) - 0.055 };
-    (value * 255.0 + 0.5) as u8
+    (linear_to_srgb(light) * 255.0 + 0.5) as u8
 }
 
 /// Columns of a text, in dots.

@@ -9,7 +9,7 @@ use crate::error::{SceneError, shown_path};
 use crate::picture::{self, Picture, Pixels};
 use crate::sandbox::open_named;
 use crate::warning::{WarningKind, Warnings};
-use downpour_math::ops;
+use downpour_math::color::srgb_to_linear;
 use std::path::Path;
 
 /// Reads a sky map. The budget is lowered by its pixels and by their size.
@@ -100,9 +100,4 @@ pub fn from_picture(picture: Picture) -> Result<SkyMap, SceneError> {
     }
     let warnings = earlier.into_iter().chain(warnings.finish()).collect();
     Ok(SkyMap { width, height, radiance, warnings })
-}
-
-/// IEC 61966-2-1: from the encoded to the linear value, both 0 to 1.
-fn srgb_to_linear(value: f32) -> f32 {
-    if value <= 0.04045 { value / 12.92 } else { ops::pow((value + 0.055) / 1.055, 2.4) }
 }

@@ -11,7 +11,7 @@ pub(crate) const ROOM: f64 = 1.25;
 pub(crate) const SPARE_ROOM: f64 = 4096.0;
 
 /// Drops of so many pixels are so rare that there is room for them.
-const MAX_LEAST_PIXELS: f64 = 1.0e4;
+const MAX_MIN_PIXELS: f64 = 1.0e4;
 
 impl RainField {
     /// Limits of the list of a picture for which a device has room for `max_room` drops.
@@ -41,7 +41,7 @@ impl RainField {
         };
         let mut least_pixels = self.affordable(view);
         // 3 % at a time, as in what is affordable, until the drops that move into the picture have room as well.
-        while room(least_pixels) > f64::from(max_room) && least_pixels < MAX_LEAST_PIXELS {
+        while room(least_pixels) > f64::from(max_room) && least_pixels < MAX_MIN_PIXELS {
             least_pixels = (least_pixels * 1.03).max(1.0e-3);
         }
         [least_pixels, room(least_pixels)]

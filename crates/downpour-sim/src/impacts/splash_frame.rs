@@ -6,14 +6,14 @@ use downpour_bvh::BvhTriangle;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_shaders::sim::field::{FIELD_SIDES, FIELD_SPLASH};
 use downpour_shaders::sim::splash::{
-    SPLASH_FINGERS, SPLASH_HIGH, SPLASH_LARGEST, SPLASH_LEVEL, SPLASH_LONGEST, SPLASH_LOW, SPLASH_RISE_SHARE,
-    SPLASH_RISE_TIMES, SPLASH_SIZE, SPLASH_SMALLEST, SPLASH_THRESHOLD, SPLASH_WALL,
+    SPLASH_FINGERS, SPLASH_HIGH, SPLASH_LEVEL, SPLASH_LOW, SPLASH_MAX_S, SPLASH_MAX_SIZE, SPLASH_MIN_SIZE,
+    SPLASH_RISE_SHARE, SPLASH_RISE_TIMES, SPLASH_SIZE, SPLASH_THRESHOLD, SPLASH_WALL,
 };
 use glam::{DVec3, Vec3};
 
 use super::SplashOptions;
 use super::slices::Slice;
-use super::splashes::LEAST_PIXELS;
+use super::splashes::MIN_PIXELS;
 use crate::falling::EyeDrop;
 use crate::field::frame::{FieldQuery, field_normals};
 use crate::field::{Class, ROOM, RainField, Reach, SPARE_ROOM};
@@ -65,10 +65,10 @@ pub(crate) struct SplashSearch {
 }
 
 /// Drops of all slices of a picture that a GPU is asked for, at most: beyond, a CPU looks where surfaces are.
-const MOST_DROPS: f64 = 4_194_304.0;
+const MAX_DROPS: f64 = 4_194_304.0;
 
 /// Crowns of a picture for which there is room on a GPU.
-const MOST_CROWNS: u32 = 65_536;
+const MAX_CROWNS: u32 = 65_536;
 
 impl SplashOptions {
     /// True if a GPU is to find the crowns of a picture at a time in s.
@@ -82,12 +82,12 @@ impl SplashOptions {
     ) -> bool {
         let Some(corners) = obstacles.corners() else { return true };
         let searches = self.searches(field, view, time_s, (corners, obstacles.origin));
-        searches.iter().map(|search| f64::from(search.frame.drops)).sum::<f64>() <= MOST_DROPS
+        searches.iter().map(|search| f64::from(search.frame.drops)).sum::<f64>() <= MAX_DROPS
     }
 
     /// Room for the crowns of some searches.
     pub(crate) fn room(searches: &[SplashSearch]) -> u32 {
-        searches.iter().map(|search| search.frame.drops).fold(0, u32::saturating_add).min(MOST_CROWNS)
+        searches.iter().map(|search| search.frame.drops).fold(0, u32::saturating_add).min(MAX_CROWNS)
     }
 
     /// Searches for the crowns of a picture at a time in s, one for each slice of time; `corners` are those of all obstacles.
@@ -112,7 +112,7 @@ impl SplashOptions {
             };
             let room = field.classes.iter().map(expected).sum::<f64>() * ROOM + SPARE_ROOM;
             let middle_s = slice.middle_s();
-            let resolved = Resolved::of(view, LEAST_PIXELS);
+            let resolved = Resolved::of(view, MIN_PIXELS);
             let query =
                 field.query_of(&still, (middle_s, slice.drift.clone()), &reach, room as u32, resolved);
             let frame = SplashFrame {
@@ -122,14 +122,14 @@ impl SplashOptions {
                 now: (time_s - middle_s) as f32,
                 strength: self.law.strength() as f32,
                 radius: (self.law.unit_radius() * self.size) as f32,
-                per_radius: (2.0 / view.least_angle(LEAST_PIXELS)) as f32,
+                per_radius: (2.0 / view.least_angle(MIN_PIXELS)) as f32,
                 farthest: view.far as f32,
                 drops: query.frame.room,
                 ..SplashFrame::zeroed()
             };
             SplashSearch { slice, view: still, query, frame }
         };
-        let span_s = [time_s - f64::from(SPLASH_LONGEST), time_s];
+        let span_s = [time_s - f64::from(SPLASH_MAX_S), time_s];
         Slice::all(field, span_s, SLICE_S).into_iter().map(of_slice).collect()
     }
 
@@ -149,9 +149,9 @@ impl SplashOptions {
         let (view, beyond) = (*view, 0.5 * slice.longest_way(field) + largest);
         move |class: &Class| {
             let radius = widest.get(class.number).copied().flatten()?;
-            let range = view.range(2.0 * radius, LEAST_PIXELS);
+            let range = view.range(2.0 * radius, MIN_PIXELS);
             (range >= view.near).then(|| Reach {
-                angle: view.least_angle(LEAST_PIXELS) / (2.0 * ratio),
+                angle: view.least_angle(MIN_PIXELS) / (2.0 * ratio),
                 beyond,
                 farthest: range + beyond,
                 radius: 0.0,
@@ -166,7 +166,7 @@ impl SplashOptions {
         // The wind adds to the speed of a drop toward a slope.
         let wind = slice.drift.of(class.speeds[1])[1].length();
         let splash = self.law.splash(class.largest, class.speeds[1] + wind)?;
-        Some(splash.radius_m * self.size * f64::from(SPLASH_LARGEST))
+        Some(splash.radius_m * self.size * f64::from(SPLASH_MAX_SIZE))
     }
 }
 
@@ -208,12 +208,12 @@ impl SplashFrame {
         if normal.y < SPLASH_LEVEL || !splashes {
             return None;
         }
-        let duration = (SPLASH_RISE_TIMES * drop.diameter / toward / SPLASH_RISE_SHARE).min(SPLASH_LONGEST);
+        let duration = (SPLASH_RISE_TIMES * drop.diameter / toward / SPLASH_RISE_SHARE).min(SPLASH_MAX_S);
         if !(0.0..duration).contains(&age) {
             return None;
         }
         let [chance, ..] = rng_draw([drop.id_low, drop.id ^ drop.id_low], 0, 0, SPLASH_SIZE).map(rng_unit);
-        let random = SPLASH_SMALLEST + (SPLASH_LARGEST - SPLASH_SMALLEST) * chance;
+        let random = SPLASH_MIN_SIZE + (SPLASH_MAX_SIZE - SPLASH_MIN_SIZE) * chance;
         let radius = self.radius * drop.diameter * drop.diameter.sqrt().sqrt() * random;
         let offset =
             Vec3::from(drop.offset) + velocity * met + Vec3::Y * (radius * splash_middle(age / duration));

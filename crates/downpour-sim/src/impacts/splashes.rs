@@ -4,7 +4,7 @@ use downpour_drop::splash::{Splash, SplashLaw, crown};
 use downpour_math::in_range;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_shaders::sim::splash::{
-    SPLASH_HIGH, SPLASH_LARGEST, SPLASH_LEVEL, SPLASH_LONGEST, SPLASH_LOW, SPLASH_SIZE, SPLASH_SMALLEST,
+    SPLASH_HIGH, SPLASH_LEVEL, SPLASH_LOW, SPLASH_MAX_S, SPLASH_MAX_SIZE, SPLASH_MIN_SIZE, SPLASH_SIZE,
 };
 
 use super::places::Places;
@@ -21,19 +21,19 @@ use glam::DVec3;
 const SPLASH: u64 = (SPLASH_HIGH as u64) << 32 | SPLASH_LOW as u64;
 
 /// Range of the random size of a splash, relative to the law.
-const SIZES: [f64; 2] = [SPLASH_SMALLEST as f64, SPLASH_LARGEST as f64];
+const SIZES: [f64; 2] = [SPLASH_MIN_SIZE as f64, SPLASH_MAX_SIZE as f64];
 
 /// Crowns are drawn from this width on the picture on, in pixels: below, they are no more than the texture of the ground.
-pub(super) const LEAST_PIXELS: f64 = 3.0;
+pub(super) const MIN_PIXELS: f64 = 3.0;
 
 /// Least vertical component of the normal of a surface on which crowns stand: on steeper ones a drop spreads downhill.
 const LEVEL: f32 = SPLASH_LEVEL;
 
 /// Longest duration of a crown, s: that of a drop of 5 mm at terminal speed.
-const LONGEST_S: f64 = SPLASH_LONGEST as f64;
+const MAX_CROWN_S: f64 = SPLASH_MAX_S as f64;
 
 /// Largest number of crowns of a picture.
-const MOST: usize = 65_536;
+const MAX_COUNT: usize = 65_536;
 
 /// Splashes of a rain.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,7 +67,7 @@ impl RainField {
         let wind = self.wind.velocity(time_s).length();
         let reach = |diameter: f64, speed: f64| {
             let radius = options.law.splash(diameter, speed + wind)?.radius_m * options.size * SIZES[1];
-            Some((radius, view.range(2.0 * radius, LEAST_PIXELS)))
+            Some((radius, view.range(2.0 * radius, MIN_PIXELS)))
         };
         let of_class = |class: &Class| {
             let (radius, range) = reach(class.largest, class.speeds[1])?;
@@ -82,13 +82,13 @@ impl RainField {
             };
             (range >= view.near).then(|| OfClass { bounds: view.bounds(range, radius), in_part, wanted })
         };
-        let span_s = [time_s - LONGEST_S, time_s];
+        let span_s = [time_s - MAX_CROWN_S, time_s];
         let crown = |impact: &Impact| options.crown(impact, view, time_s);
         let mut places = Places::new(obstacles, LEVEL);
         let mut crowns = self.impacts_of(&Facets::new(obstacles), &mut places, span_s, of_class, crown)?;
-        if crowns.len() > MOST {
+        if crowns.len() > MAX_COUNT {
             crowns.sort_by(|a, b| b.diameter.total_cmp(&a.diameter).then(a.id.cmp(&b.id)));
-            crowns.truncate(MOST);
+            crowns.truncate(MAX_COUNT);
         }
         Ok(crowns)
     }
@@ -100,7 +100,7 @@ impl SplashOptions {
         let age_s = time_s - impact.time_s;
         let toward = -f64::from(impact.velocity.dot(impact.normal));
         let Splash { radius_m, duration_s } = self.law.splash(impact.diameter.into(), toward)?;
-        let duration_s = duration_s.min(LONGEST_S);
+        let duration_s = duration_s.min(MAX_CROWN_S);
         if impact.normal.y < LEVEL || !(0.0..duration_s).contains(&age_s) {
             return None;
         }
@@ -109,7 +109,7 @@ impl SplashOptions {
         let random = SIZES[0] + (SIZES[1] - SIZES[0]) * f64::from(chance);
         let radius = radius_m * self.size * random;
         let position = impact.position + DVec3::Y * (radius * crown::middle(age_s / duration_s));
-        let range = view.range(2.0 * radius, LEAST_PIXELS);
+        let range = view.range(2.0 * radius, MIN_PIXELS);
         let offset = position - view.eye;
         // The mask reaches beyond the largest radius, to the droplets of the rim.
         let shown = offset.length() < range && within(&view.sides(), offset, 1.5 * radius);

@@ -9,7 +9,7 @@ use glam::Vec3;
 const REACH_M: f32 = 0.5;
 
 /// Maximum area of a triangle of a lamp's glass, m^2: a larger one is a sign or a window.
-const LARGEST_M2: f32 = 0.25;
+const MAX_GLASS_M2: f32 = 0.25;
 
 /// A lamp that is not parallel.
 struct Lamp {
@@ -43,7 +43,7 @@ pub(super) fn owners(
     lamps.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let owner = |&triangle: &usize| {
         let [a, b, c] = triangles[triangle].map(Vec3::from);
-        if 0.5 * (b - a).cross(c - a).length() > LARGEST_M2 {
+        if 0.5 * (b - a).cross(c - a).length() > MAX_GLASS_M2 {
             return None;
         }
         let middle = (a + b + c) / 3.0;

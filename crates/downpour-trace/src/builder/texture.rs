@@ -1,5 +1,6 @@
 //! Textures on their way into a scene.
 
+use downpour_math::color::srgb_to_linear;
 use downpour_math::pyramid::{PyramidRounding, pyramid, pyramid_levels};
 use downpour_shaders::render::scene::{SCENE_REPEAT_U, SCENE_REPEAT_V, SCENE_ROOTED};
 
@@ -17,7 +18,13 @@ impl SceneBuilder {
     #[must_use]
     pub fn texture(&mut self, width: u32, height: u32, texels: &[[u8; 4]], of: TextureUse) -> TextureSlot {
         let decode: Vec<f32> = (0..=255u8)
-            .map(|v| if of == TextureUse::Color { srgb_to_linear(v) } else { f32::from(v) / 255.0 })
+            .map(|v| {
+                if of == TextureUse::Color {
+                    srgb_to_linear(f32::from(v) / 255.0)
+                } else {
+                    f32::from(v) / 255.0
+                }
+            })
             .collect();
         let mut all: Vec<[f32; 4]> = texels
             .iter()
@@ -53,10 +60,4 @@ impl SceneBuilder {
             levels,
         }
     }
-}
-
-/// The sRGB transfer function (IEC 61966-2-1).
-fn srgb_to_linear(value: u8) -> f32 {
-    let v = f32::from(value) / 255.0;
-    if v <= 0.04045 { v / 12.92 } else { downpour_math::ops::pow((v + 0.055) / 1.055, 2.4) }
 }

@@ -122,7 +122,7 @@ impl ScenePipeline {
         let storage = wgpu::BufferUsages::STORAGE;
         let picture = buffers.buffer("picture", pixels * 16, storage)?;
         let bytes = pixels * size_of::<TraceAmbient>() as u64;
-        let gather = buffers.buffer("light of the sky", bytes, storage)?;
+        let found_light = buffers.buffer("light of the sky", bytes, storage)?;
         let samples = f64::from(frame.grid * frame.grid);
         let paced = sample_ms.map_or(0, |ms| (DISPATCH_MS / (ms * samples).max(1.0e-9)) as u32);
         let rows = paced.max(PIXELS_PER_DISPATCH) / frame.camera.width.max(1);
@@ -142,10 +142,10 @@ impl ScenePipeline {
                     1,
                 ];
                 if skylight_pass == 0 {
-                    let bound = tracer.bind(&self.gpu, &scene.buffers(&uniform, &picture, &gather))?;
+                    let bound = tracer.bind(&self.gpu, &scene.buffers(&uniform, &picture, &found_light))?;
                     bands.push((bound, groups));
                 }
-                let bound = self.skylight.bind(&self.gpu, &[&uniform, &gather, from, to, &picture])?;
+                let bound = self.skylight.bind(&self.gpu, &[&uniform, &found_light, from, to, &picture])?;
                 filters.push((bound, groups));
             }
         }
@@ -305,9 +305,9 @@ impl SceneOnGpu {
         &'a self,
         frame: &'a wgpu::Buffer,
         picture: &'a wgpu::Buffer,
-        gather: &'a wgpu::Buffer,
+        found_light: &'a wgpu::Buffer,
     ) -> [&'a wgpu::Buffer; 9] {
         let [nodes, triangles, corners] = [&self.nodes, &self.triangles, &self.corners];
-        [frame, nodes, triangles, corners, &self.table, &self.texels, &self.sky, picture, gather]
+        [frame, nodes, triangles, corners, &self.table, &self.texels, &self.sky, picture, found_light]
     }
 }

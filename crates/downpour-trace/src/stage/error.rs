@@ -5,7 +5,7 @@ use downpour_render::RenderError;
 /// Error of a stage.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum StageError {
+pub enum FrameSceneError {
     /// The picture is invalid.
     #[error(transparent)]
     Render(#[from] RenderError),

@@ -11,7 +11,7 @@ use downpour_render::light::LightSource;
 use downpour_weather::{FlashLight, Weather};
 use glam::{DVec3, Vec2, Vec3};
 
-use super::Stage;
+use super::FrameScene;
 use crate::sky_light::{SkyLight, direction_of};
 use crate::wet::SceneWetness;
 
@@ -36,7 +36,7 @@ const CONTRAST: f32 = 2.2;
 /// Seed of the billows.
 const CLOUD_SEED: [u32; 2] = [2003, 1982];
 
-impl Stage {
+impl FrameScene {
     /// The stage in the light of flashes alone, at the time in seconds at which this one is: no sky, sun, lamp or surface shines but
     /// the flashes and the clouds that they light. Puddles and a pane are removed.
     #[must_use]

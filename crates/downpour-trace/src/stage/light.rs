@@ -55,7 +55,7 @@ fn set_sky(data: &mut SceneData, map: &SkyMap) {
 }
 
 /// Sets sky, sun and lamps that change over time to a time in seconds. Glass of the model belongs to the lamps that were beside
-/// it at time 0, and has the radius of then. Lights come in the order of [`Stage::new`](super::Stage::new): those of the models,
+/// it at time 0, and has the radius of then. Lights come in the order of [`FrameScene::new`](super::FrameScene::new): those of the models,
 /// the lamps of the weather, the sun.
 pub(super) fn relight(data: &mut SceneData, weather: &Weather, loaded: &Loaded, origin: DVec3, time_s: f64) {
     let keys = &weather.keys;

@@ -13,7 +13,7 @@ use downpour_scene::sky::{SkyMap, Sun};
 use downpour_weather::{CameraPose, Loaded, Weather};
 use glam::{Affine2, Affine3A, DVec3, Vec2, Vec3};
 
-use super::{CameraChoice, MAX_TRIANGLES, Stage, StageError};
+use super::{CameraChoice, FrameScene, FrameSceneError, MAX_TRIANGLES};
 
 /// A triangle in the plane z = 0, `count` times.
 fn triangles(count: u32) -> Primitive {
@@ -51,8 +51,8 @@ fn loaded(scene: Scene) -> Loaded {
     }
 }
 
-fn stage(weather: &Weather, loaded: &Loaded) -> Stage {
-    Stage::new(weather, loaded, 0.0).expect("a stage")
+fn stage(weather: &Weather, loaded: &Loaded) -> FrameScene {
+    FrameScene::new(weather, loaded, 0.0).expect("a stage")
 }
 
 #[test]
@@ -167,8 +167,8 @@ fn pictures_of_the_same_pixels_are_stored_once() {
 fn too_many_triangles_are_over_a_limit() {
     let mut all = scene((0..5).map(|x| node(Some(0), Vec3::X * x as f32)).collect());
     all.meshes[0].primitives = vec![triangles(MAX_TRIANGLES as u32 / 5 + 1)];
-    let error = Stage::new(&Weather::default(), &loaded(all), 0.0).expect_err("a limit");
-    assert!(matches!(error, StageError::OverLimit { .. }));
+    let error = FrameScene::new(&Weather::default(), &loaded(all), 0.0).expect_err("a limit");
+    assert!(matches!(error, FrameSceneError::OverLimit { .. }));
     assert!(error.to_string().starts_with("triangles of the scene"), "{error}");
 }
 
@@ -176,14 +176,14 @@ fn too_many_triangles_are_over_a_limit() {
 fn times_and_sizes_are_checked() {
     let all = loaded(Scene::default());
     for time in [f64::NAN, f64::INFINITY, 1.1e6] {
-        let error = Stage::new(&Weather::default(), &all, time).expect_err("no time");
-        assert!(matches!(error, StageError::Render(RenderError::OutOfRange(OutOfRange { .. }))));
+        let error = FrameScene::new(&Weather::default(), &all, time).expect_err("no time");
+        assert!(matches!(error, FrameSceneError::Render(RenderError::OutOfRange(OutOfRange { .. }))));
     }
     let mut weather = Weather::default();
     for size in [[0, 5], [16_385, 1]] {
         weather.size = size;
-        let error = Stage::new(&weather, &all, 0.0).expect_err("no size");
-        assert!(matches!(error, StageError::Render(RenderError::Size { found, .. }) if found == size));
+        let error = FrameScene::new(&weather, &all, 0.0).expect_err("no size");
+        assert!(matches!(error, FrameSceneError::Render(RenderError::Size { found, .. }) if found == size));
     }
 }
 
@@ -207,8 +207,8 @@ fn wetness_is_that_of_the_time() {
     let mut weather = Weather::default();
     weather.wetness.rained_m = Some(0.0);
     let all = loaded(scene(vec![node(None, Vec3::ZERO)]));
-    let at = |time_s: f64| Stage::new(&weather, &all, time_s).expect("a stage").data.table;
-    let first = Stage::new(&weather, &all, 0.0).expect("a stage");
+    let at = |time_s: f64| FrameScene::new(&weather, &all, time_s).expect("a stage").data.table;
+    let first = FrameScene::new(&weather, &all, 0.0).expect("a stage");
     assert_eq!(first.data.wetness, 0, "nothing has fallen yet");
     let later = first.seen_at(&weather, &all, 60.0).expect("a stage");
     assert_eq!(later.data.table, at(60.0));
@@ -217,5 +217,5 @@ fn wetness_is_that_of_the_time() {
     assert_ne!(at(60.0), at(90.0));
     assert_eq!(latest.seen_at(&weather, &all, 0.0).expect("a stage").data.table, first.data.table);
     weather.wetness.is_enabled = false;
-    assert_eq!(Stage::new(&weather, &all, 60.0).expect("a stage").data.wetness, 0);
+    assert_eq!(FrameScene::new(&weather, &all, 60.0).expect("a stage").data.wetness, 0);
 }

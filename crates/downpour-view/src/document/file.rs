@@ -1,9 +1,9 @@
 //! Files of documents: read, written in one piece, watched, recovered.
 
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use downpour::output_file::{folder_of, replace_file};
 use downpour::scene::error::shown_path;
 use downpour::weather::MAX_FILE;
 use sha2::{Digest, Sha256};
@@ -90,20 +90,21 @@ impl Document {
             let name = shown_path(path);
             return Err(DocumentError::Refused(format!("{name}; allowed: a weather file (.toml)")));
         }
-        let (own, other) = (folder_of(&self.place()), folder_of(path));
+        let place = self.place();
+        let (own, other) = (folder_of(&place), folder_of(path));
         let weather = self.weather();
         let names_files = !weather.models.is_empty() || self.names_a_file();
-        if names_files && fs::canonicalize(&own).ok() != fs::canonicalize(&other).ok() {
+        if names_files && fs::canonicalize(own).ok() != fs::canonicalize(other).ok() {
             return Err(DocumentError::Refused(format!(
                 "{}: the files of the weather are in {}; allowed: the same folder",
                 shown_path(path),
-                shown_path(&own)
+                shown_path(own)
             )));
         }
         let before = self.recovery_path();
         self.write(path)?;
         self.path = Some(path.to_owned());
-        self.folder = other;
+        self.folder = other.to_owned();
         if before != self.recovery_path() {
             let _ = fs::remove_file(before);
         }
@@ -216,13 +217,6 @@ fn newer(error: DocumentError) -> DocumentError {
     }
 }
 
-fn folder_of(path: &Path) -> PathBuf {
-    match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
-        _ => PathBuf::from("."),
-    }
-}
-
 fn failed(path: &Path, error: &std::io::Error) -> DocumentError {
     DocumentError::File { path: shown_path(path), reason: error.to_string() }
 }
@@ -244,23 +238,9 @@ fn read(path: &Path) -> Result<Vec<u8>, DocumentError> {
     fs::read(path).map_err(|error| failed(path, &error))
 }
 
-/// Writes a file beside its place and moves it there.
+/// Writes a file: all of its bytes, or nothing.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), DocumentError> {
-    let folder = folder_of(path);
-    let write = || {
-        let mut part = tempfile::Builder::new().prefix(".downpour-").suffix(".part").tempfile_in(&folder)?;
-        part.write_all(bytes)?;
-        part.as_file().sync_all()?;
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            let mode = fs::metadata(path).map_or(0o644, |meta| meta.permissions().mode() & 0o777);
-            part.as_file().set_permissions(fs::Permissions::from_mode(mode))?;
-        }
-        part.persist(path).map_err(|error| error.error)?;
-        Ok(())
-    };
-    write().map_err(|error: std::io::Error| failed(path, &error))
+    replace_file(path, bytes).map_err(|error| failed(path, &error))
 }
 
 fn digest(bytes: &[u8]) -> [u8; 32] {

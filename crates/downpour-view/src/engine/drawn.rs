@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use downpour::sim::field::VisibleDrops;
-use downpour::trace::stage::Stage;
+use downpour::trace::stage::FrameScene;
 use glam::{DVec2, DVec3};
 
 /// A picture.
@@ -24,7 +24,7 @@ pub struct Drawn {
     /// The camera that it is seen by.
     pub view: PictureView,
     /// The scene, for rays to its surfaces.
-    pub stage: Arc<Stage>,
+    pub stage: Arc<FrameScene>,
     /// Number of drops in it.
     pub drops_drawn: usize,
     /// The drops that it could show, and the indices of those in it, nearest first, where they were asked for.

@@ -50,7 +50,7 @@ const MAX_SLOT_FLASHES: u32 = 64;
 pub(super) const MAX_FLASH_S: f64 = 0.9;
 
 /// Maximum time from the begin of a flash until it is dark, s.
-pub(super) const LONGEST_S: f64 = MAX_FLASH_S + DARK_AFTER * DECAYS_S[1];
+pub(super) const MAX_LIT_S: f64 = MAX_FLASH_S + DARK_AFTER * DECAYS_S[1];
 
 /// Dimensions of the random numbers: the number of a slot's flashes, two of each flash, and one of each stroke.
 const COUNT_DIMENSION: u32 = 7301;

@@ -9,7 +9,7 @@ use downpour_render::picture::{Picture, PictureOptions, timed};
 use downpour_render::rain::DropMasks;
 use downpour_trace::kept::KeptPlate;
 use downpour_trace::picture::{TracedPlate, render_picture_on};
-use downpour_trace::stage::Stage;
+use downpour_trace::stage::FrameScene;
 use downpour_weather::Weather;
 
 use super::RendererError;
@@ -161,7 +161,7 @@ pub(super) struct ThroughGlass {
 }
 
 /// Pane that a frame is seen through.
-pub(super) struct Through {
+pub(super) struct PaneView {
     pub(super) glass: GlassPicture,
     /// The environment map that the pane shows; `None` takes the one of the drops.
     pub(super) environment: Option<Vec<[f32; 4]>>,
@@ -264,7 +264,7 @@ impl Drawer {
     pub(super) fn display(
         &self,
         of: downpour_trace::gpu::PictureUse,
-        stage: &Stage,
+        stage: &FrameScene,
         drops: &Drops,
         masks: &DropMasks,
         options: &PictureOptions,
@@ -276,11 +276,11 @@ impl Drawer {
     pub(super) fn paint(
         &self,
         kept_frames: u32,
-        stage: &Stage,
+        stage: &FrameScene,
         drops: &Drops,
         masks: &DropMasks,
         options: &PictureOptions,
-        through: Option<&Through>,
+        through: Option<&PaneView>,
     ) -> Result<Painted, RendererError> {
         #[cfg(feature = "wgpu")]
         if let Some(on_gpu) = &self.on_gpu {
@@ -299,8 +299,8 @@ impl Drawer {
             *kept = own;
         }
         drop(kept);
-        if let Some(Through { glass, environment, glow, camera }) = through {
-            let environment = environment.as_ref().unwrap_or(&picture.surroundings);
+        if let Some(PaneView { glass, environment, glow, camera }) = through {
+            let environment = environment.as_ref().unwrap_or(&picture.environment);
             let behind = picture.behind_glass();
             let seen = timed(&mut picture.passes, "glass", || glass.through(&behind, environment));
             picture.through_glass = Some(seen);

@@ -8,40 +8,40 @@ use downpour_render::RenderError;
 use downpour_render::glass::PaneError;
 use downpour_scene::SceneError;
 use downpour_trace::puddle::PuddleError;
-use downpour_trace::stage::StageError;
+use downpour_trace::stage::FrameSceneError;
 
 /// Reason why there is no frame. Messages are one line: the file or the quantity, what was found, what is allowed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RendererError {
-    /// A file cannot be read, or what is in it cannot be.
+    /// A file cannot be read, or its contents are wrong.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// The scene cannot be set.
+    /// The scene of a frame cannot be built.
     #[error(transparent)]
-    Stage(#[from] StageError),
-    /// The rain cannot be.
+    FrameScene(#[from] FrameSceneError),
+    /// The rain's settings are out of range.
     #[error(transparent)]
     Shower(#[from] ShowerError),
-    /// The pane cannot be.
+    /// The pane of glass cannot be built or drawn.
     #[error(transparent)]
     Pane(#[from] PaneError),
-    /// The water on the pane cannot be.
+    /// The settings of the water on the pane are out of range.
     #[error(transparent)]
     Glass(#[from] GlassError),
-    /// The puddles cannot be.
+    /// The settings of the puddles are out of range.
     #[error(transparent)]
     Puddle(#[from] PuddleError),
-    /// The masks of the drops cannot be.
+    /// The refraction masks of the drops cannot be made.
     #[error(transparent)]
     Mask(#[from] MaskError),
-    /// The picture cannot be.
+    /// The frame cannot be drawn or packed into a file.
     #[error(transparent)]
     Render(#[from] RenderError),
-    /// The drops cannot be.
+    /// A quantity of the drops is out of range.
     #[error(transparent)]
     Drop(#[from] DropError),
-    /// A file whose name does not say what is in it.
+    /// The extension of a file name is not one of those allowed.
     #[error("{path}; allowed: {allowed}")]
     Name {
         /// The file, with what it is for.
@@ -49,21 +49,21 @@ pub enum RendererError {
         /// Allowed names.
         allowed: &'static str,
     },
-    /// A time that frames do not have.
+    /// The time of a frame is not a number or out of range.
     #[error("time is {found} s; allowed: -1e6 to 1e6 s")]
     Time {
         /// The time, s.
         found: f64,
     },
-    /// The weather takes streaks from an atlas, and none was given.
+    /// The weather takes streaks from an atlas, and [`RendererOptions::atlas`](super::RendererOptions::atlas) is `None`.
     #[error(
         "streaks.color is \"atlas\" or \"atlas-random\", and there is no streak atlas; allowed: with a streak atlas in the options"
     )]
     NoAtlas,
-    /// A GPU was asked for, of a library without the feature `wgpu`.
+    /// A GPU was asked for, and the library was built without the feature `wgpu`.
     #[error("no GPU support; allowed: the feature `wgpu`, or the CPU")]
     NoGpuSupport,
-    /// A frame cannot be written.
+    /// A file cannot be written.
     #[error("{path}: {reason}")]
     Write {
         /// The file.
@@ -71,11 +71,11 @@ pub enum RendererError {
         /// Message of the system.
         reason: String,
     },
-    /// The GPU did not do it.
+    /// The GPU failed: no adapter, a lost device, too little memory, a limit.
     #[cfg(feature = "wgpu")]
     #[error(transparent)]
     Gpu(#[from] downpour_gpu::GpuError),
-    /// A frame cannot be drawn by the GPU.
+    /// The GPU failed while it drew a frame, or the frame is too large for it.
     #[cfg(feature = "wgpu")]
     #[error(transparent)]
     Picture(#[from] downpour_trace::gpu::GpuPictureError),

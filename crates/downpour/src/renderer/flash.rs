@@ -5,7 +5,7 @@
 
 use downpour_render::rain::{Exposure, TemporalResponse};
 use downpour_sim::field::{EyeDrop, FallingDrop, VisibleDrops};
-use downpour_trace::stage::Stage;
+use downpour_trace::stage::FrameScene;
 use downpour_weather::{FlashExposure, Observer};
 
 use super::computer::Painted;
@@ -45,7 +45,7 @@ impl Renderer {
     /// A part of the exposure in which flashes shine.
     fn flash(
         &self,
-        stage: &Stage,
+        stage: &FrameScene,
         time_s: f64,
         drops: &Drops,
         part: &FlashExposure,
@@ -81,7 +81,7 @@ impl Renderer {
 }
 
 /// Drops so many seconds later, as the eye of a stage sees them that moves with them meanwhile.
-fn later(drops: &VisibleDrops, stage: &Stage, later_s: f64) -> VisibleDrops {
+fn later(drops: &VisibleDrops, stage: &FrameScene, later_s: f64) -> VisibleDrops {
     let eye = stage.origin + stage.viewpoint.eye.as_dvec3();
     let motion = stage.motion;
     let moved = |drop: &FallingDrop| {

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
+use crate::output_file::replace_file;
 use downpour_render::file::{glow_channels, layer_channels, write_exr, write_exr_channels, write_png};
 use downpour_render::picture::Picture;
 use downpour_render::rain::RainMedium;
@@ -142,7 +143,7 @@ impl Frame {
         Ok(write_exr_channels([width, height], channels)?)
     }
 
-    /// Writes a .png ([`Frame::png`]) or an .exr ([`Frame::exr`]); a file that is there is replaced.
+    /// Writes a .png ([`Frame::png`]) or an .exr ([`Frame::exr`]); complete or not at all. A file that is there is replaced.
     ///
     /// # Errors
     /// [`RendererError::Name`] for another ending, [`RendererError::Write`] for what the system does not let us write.
@@ -157,7 +158,7 @@ impl Frame {
                 return Err(RendererError::Name { path, allowed: ".png or .exr" });
             }
         };
-        std::fs::write(path, bytes).map_err(|error| RendererError::Write {
+        replace_file(path, &bytes).map_err(|error| RendererError::Write {
             path: path.display().to_string(),
             reason: error.to_string(),
         })

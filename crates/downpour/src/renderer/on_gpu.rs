@@ -13,10 +13,10 @@ use downpour_sim::gpu::{FieldOnGpu, FieldSearch};
 use downpour_trace::gpu::{
     DisplayReadback, FieldDrops, PictureDrops, PictureOnGpu, PictureRenderer, PictureUse,
 };
-use downpour_trace::stage::Stage;
+use downpour_trace::stage::FrameScene;
 
 use super::RendererError;
-use super::computer::{Painted, Through, ThroughGlass};
+use super::computer::{Painted, PaneView, ThroughGlass};
 use super::drops::Drops;
 use crate::shower::ShowerView;
 
@@ -48,7 +48,7 @@ impl OnGpu {
     pub(super) fn display(
         &self,
         of: PictureUse,
-        stage: &Stage,
+        stage: &FrameScene,
         drops: &Drops,
         masks: &DropMasks,
         options: &PictureOptions,
@@ -59,7 +59,7 @@ impl OnGpu {
     fn drawn(
         &self,
         of: PictureUse,
-        stage: &Stage,
+        stage: &FrameScene,
         drops: &Drops,
         masks: &DropMasks,
         options: &PictureOptions,
@@ -78,15 +78,15 @@ impl OnGpu {
     pub(super) fn paint(
         &self,
         kept_frames: u32,
-        stage: &Stage,
+        stage: &FrameScene,
         drops: &Drops,
         masks: &DropMasks,
         options: &PictureOptions,
-        through: Option<&Through>,
+        through: Option<&PaneView>,
     ) -> Result<Painted, RendererError> {
         let of = PictureUse { kept_frames, tone: None };
         let mut drawn = self.drawn(of, stage, drops, masks, options)?;
-        let Some(Through { glass, environment, glow, camera }) = through else {
+        let Some(PaneView { glass, environment, glow, camera }) = through else {
             return Ok(Painted::OnItsWay { read: Box::new(drawn.begin_read()?), through_glass: None });
         };
         let begin = Instant::now();
@@ -106,7 +106,7 @@ impl OnGpu {
     fn draw(
         &self,
         of: PictureUse,
-        stage: &Stage,
+        stage: &FrameScene,
         shown: &ShowerView,
         masks: &DropMasks,
         options: &PictureOptions,

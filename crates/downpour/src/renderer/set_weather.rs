@@ -7,7 +7,7 @@ use downpour_render::rain::DropMasks;
 use downpour_scene::Budget;
 use downpour_scene::sandbox::Files;
 use downpour_scene::scene::Scene;
-use downpour_trace::stage::Stage;
+use downpour_trace::stage::FrameScene;
 use downpour_weather::Weather;
 
 use super::{Renderer, RendererError, RendererOptions, atlas_of};
@@ -30,14 +30,14 @@ impl Renderer {
         let atlas = atlas_of(&weather, self.atlas.clone())?;
         let options = RendererOptions { atlas, ..self.options.clone() };
         let first = if reloaded.models || loaded.is_animated() {
-            Stage::new(&weather, &loaded, options.first_s)?
+            FrameScene::new(&weather, &loaded, options.first_s)?
         } else {
             self.first.in_weather(before, &weather, &loaded, reloaded, options.first_s)?
         };
         let mut shower = Shower::new(&weather)?;
         if reloaded.models {
             if loaded.is_animated() && shower.has_drips() {
-                shower.find_drips(&Stage::new(&weather, &loaded, 0.0)?)?;
+                shower.find_drips(&FrameScene::new(&weather, &loaded, 0.0)?)?;
             }
         } else {
             shower = shower.going_on_from(&self.shower);

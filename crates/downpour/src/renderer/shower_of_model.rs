@@ -5,7 +5,7 @@
 //! that drops scatter forwards is then many times that of the clouds behind them.
 
 use downpour_math::ops::f64 as ops;
-use downpour_trace::stage::{Stage, StageError};
+use downpour_trace::stage::{FrameScene, FrameSceneError};
 use downpour_weather::{Loaded, SkySource, SunSource, Weather};
 use glam::DVec3;
 
@@ -43,14 +43,14 @@ pub(super) fn shower(name: String) -> Weather {
 /// The sun below the clouds, behind what the camera looks at. A model that brings lamps is lit by them.
 ///
 /// # Errors
-/// As [`Stage::view_at`].
-pub(super) fn sun(weather: &Weather, loaded: &Loaded) -> Result<SunSource, StageError> {
+/// As [`FrameScene::view_at`].
+pub(super) fn sun(weather: &Weather, loaded: &Loaded) -> Result<SunSource, FrameSceneError> {
     if !loaded.scene.lights.is_empty() {
         return Ok(SunSource::None);
     }
     // Where no camera is, all is looked at along -Z.
     let forward = match loaded.scene.cameras.first() {
-        Some(_) => Stage::view_at(weather, loaded, 0.0)?.forward,
+        Some(_) => FrameScene::view_at(weather, loaded, 0.0)?.forward,
         None => DVec3::NEG_Z,
     };
     let ahead = DVec3::new(forward.x, 0.0, forward.z).try_normalize().unwrap_or(DVec3::NEG_Z);

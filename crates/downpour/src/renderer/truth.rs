@@ -8,7 +8,7 @@ use downpour_render::rain::{DropMasks, Rain};
 use downpour_sim::field::VisibleDrops;
 use downpour_trace::picture::picture_frame;
 use downpour_trace::scene::SceneView;
-use downpour_trace::stage::Stage;
+use downpour_trace::stage::FrameScene;
 use downpour_trace::truth::SurfaceTruth;
 
 use super::RendererError;
@@ -59,7 +59,7 @@ impl Truth {
 /// What the truth about a frame is found from.
 #[derive(Debug)]
 pub(super) struct TruthOf {
-    pub(super) stage: Stage,
+    pub(super) stage: FrameScene,
     pub(super) masks: Arc<DropMasks>,
     pub(super) options: PictureOptions,
 }

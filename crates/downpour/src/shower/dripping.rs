@@ -9,7 +9,7 @@ use downpour_sim::field::FallingDrop;
 use downpour_sim::shelter::Obstacles;
 use downpour_sim::view::View;
 use downpour_trace::data::SceneData;
-use downpour_trace::stage::Stage;
+use downpour_trace::stage::FrameScene;
 use downpour_weather::{RAINED_S, Weather};
 use glam::DVec3;
 
@@ -64,7 +64,7 @@ impl Dripping {
     }
 
     /// Finds the drips of a scene.
-    pub(super) fn find(&self, stage: &Stage) -> Result<(), ShowerError> {
+    pub(super) fn find(&self, stage: &FrameScene) -> Result<(), ShowerError> {
         self.drips(stage)?;
         Ok(())
     }
@@ -72,7 +72,7 @@ impl Dripping {
     /// The drips that a picture shows at a time in seconds.
     pub(super) fn visible(
         &self,
-        stage: &Stage,
+        stage: &FrameScene,
         view: &View,
         least_pixels: f64,
         time_s: f64,
@@ -83,7 +83,7 @@ impl Dripping {
     }
 
     /// The drips near the eye of a stage, in the scene that was seen first.
-    fn drips(&self, stage: &Stage) -> Result<Arc<Drips>, ShowerError> {
+    fn drips(&self, stage: &FrameScene) -> Result<Arc<Drips>, ShowerError> {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         let eye = stage.origin + stage.viewpoint.eye.as_dvec3();
         let (data, origin) = match &*known {

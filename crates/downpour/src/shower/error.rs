@@ -6,7 +6,7 @@ use downpour_wind::WindError;
 
 use downpour_render::RenderError;
 use downpour_render::glass::PaneError;
-use downpour_trace::stage::StageError;
+use downpour_trace::stage::FrameSceneError;
 
 /// Reason why there is no rain.
 #[derive(Debug, thiserror::Error)]
@@ -44,7 +44,7 @@ pub enum ShowerError {
     Render(#[from] RenderError),
     /// The scene between pictures.
     #[error(transparent)]
-    Stage(#[from] StageError),
+    FrameScene(#[from] FrameSceneError),
     /// The pane before the eye.
     #[error(transparent)]
     Pane(#[from] PaneError),

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use downpour_sim::view::View;
 use downpour_weather::{Loaded, Weather};
 
-use downpour_trace::stage::{Stage, StageError};
+use downpour_trace::stage::{FrameScene, FrameSceneError};
 
 /// A scene over time.
 pub trait Scenery {
@@ -15,30 +15,30 @@ pub trait Scenery {
     /// The part of space that a picture at a time in seconds shows.
     ///
     /// # Errors
-    /// As [`Stage::new`].
-    fn view(&self, time_s: f64) -> Result<View, StageError>;
+    /// As [`FrameScene::new`].
+    fn view(&self, time_s: f64) -> Result<View, FrameSceneError>;
 
     /// The scene at a time in seconds.
     ///
     /// # Errors
-    /// As [`Stage::new`].
-    fn stage(&self, time_s: f64) -> Result<Cow<'_, Stage>, StageError>;
+    /// As [`FrameScene::new`].
+    fn stage(&self, time_s: f64) -> Result<Cow<'_, FrameScene>, FrameSceneError>;
 }
 
 /// A scene that stands still.
 #[derive(Clone, Copy, Debug)]
-pub struct Still<'a>(pub &'a Stage);
+pub struct Still<'a>(pub &'a FrameScene);
 
 impl Scenery for Still<'_> {
     fn is_still(&self) -> bool {
         true
     }
 
-    fn view(&self, _: f64) -> Result<View, StageError> {
+    fn view(&self, _: f64) -> Result<View, FrameSceneError> {
         Ok(self.0.view()?)
     }
 
-    fn stage(&self, _: f64) -> Result<Cow<'_, Stage>, StageError> {
+    fn stage(&self, _: f64) -> Result<Cow<'_, FrameScene>, FrameSceneError> {
         Ok(Cow::Borrowed(self.0))
     }
 }
@@ -57,12 +57,12 @@ impl Scenery for MovingScenery<'_> {
         false
     }
 
-    fn view(&self, time_s: f64) -> Result<View, StageError> {
-        Stage::view_at(self.weather, self.loaded, time_s)
+    fn view(&self, time_s: f64) -> Result<View, FrameSceneError> {
+        FrameScene::view_at(self.weather, self.loaded, time_s)
     }
 
-    fn stage(&self, time_s: f64) -> Result<Cow<'_, Stage>, StageError> {
-        Ok(Cow::Owned(Stage::new(self.weather, self.loaded, time_s)?))
+    fn stage(&self, time_s: f64) -> Result<Cow<'_, FrameScene>, FrameSceneError> {
+        Ok(Cow::Owned(FrameScene::new(self.weather, self.loaded, time_s)?))
     }
 }
 
@@ -70,7 +70,7 @@ impl Scenery for MovingScenery<'_> {
 #[derive(Clone, Copy, Debug)]
 pub struct MovingEye<'a> {
     /// The scene, seen at any time.
-    pub stage: &'a Stage,
+    pub stage: &'a FrameScene,
     /// Its weather.
     pub weather: &'a Weather,
     /// Its files.
@@ -82,11 +82,11 @@ impl Scenery for MovingEye<'_> {
         false
     }
 
-    fn view(&self, time_s: f64) -> Result<View, StageError> {
+    fn view(&self, time_s: f64) -> Result<View, FrameSceneError> {
         self.stage.seen_view_at(self.weather, self.loaded, time_s)
     }
 
-    fn stage(&self, time_s: f64) -> Result<Cow<'_, Stage>, StageError> {
+    fn stage(&self, time_s: f64) -> Result<Cow<'_, FrameScene>, FrameSceneError> {
         Ok(Cow::Owned(self.stage.seen_at(self.weather, self.loaded, time_s)?))
     }
 }

@@ -21,7 +21,7 @@ use glam::{DVec3, Vec3};
 
 use super::scenery::Scenery;
 use super::{ShowerError, bounce};
-use downpour_trace::stage::Stage;
+use downpour_trace::stage::FrameScene;
 
 /// Steps of a second.
 const STEPS_PER_S: f64 = 60.0;
@@ -45,7 +45,7 @@ const OLDEST_S: [f64; 2] = [2.0, 32.0];
 const TEXEL_M: f32 = 0.06;
 
 /// The most texels along an edge of it.
-const MOST_TEXELS: f32 = 512.0;
+const MAX_TEXELS: f32 = 512.0;
 
 /// Steps of the slope at which the map looks.
 const SLOPE_STEP: f32 = 0.125;
@@ -70,14 +70,14 @@ struct Running {
     simulation: Simulation,
     /// Steps from time 0 to the state.
     step: i64,
-    surroundings: Surroundings,
+    step_scenery: StepScenery,
     /// True if the next step looks at wind and map, whatever its number: the weather has changed.
     is_stale: bool,
 }
 
 /// Obstacles and wind of the drops.
 #[derive(Clone, Debug)]
-struct Surroundings {
+struct StepScenery {
     /// Digest of the scene that the map was made of.
     made_of: Option<(u64, CollisionOptions)>,
     map: Option<CollisionMap>,
@@ -95,7 +95,7 @@ struct Blown {
     field: WindField,
 }
 
-impl Surroundings {
+impl StepScenery {
     fn field(&self) -> Option<&WindField> {
         self.wind.as_ref().map(|wind| &wind.field)
     }
@@ -147,7 +147,7 @@ impl Stepped {
     pub(super) fn at(
         &mut self,
         scenery: &dyn Scenery,
-        stage: &Stage,
+        stage: &FrameScene,
         time_s: f64,
         passed: &mut dyn FnMut(u32, u32),
     ) -> Result<VisibleDrops, ShowerError> {
@@ -177,30 +177,30 @@ impl Stepped {
             running.step += 1;
             let now_s = running.step as f64 / STEPS_PER_S;
             if running.step % STEPS_PER_WIND == 0 || std::mem::take(&mut running.is_stale) {
-                running.surroundings = self.surroundings(scenery, now_s, Some(running.surroundings))?;
+                running.step_scenery = self.step_scenery(scenery, now_s, Some(running.step_scenery))?;
             }
             let view = self.view(scenery, now_s)?;
             let air = self.weather.wind.air().prepared(now_s);
-            let surroundings = &running.surroundings;
+            let step_scenery = &running.step_scenery;
             let moment = StepInput {
-                field: surroundings.field(),
-                map: surroundings.map.as_ref(),
+                field: step_scenery.field(),
+                map: step_scenery.map.as_ref(),
                 air: Some(&air),
-                ..StepInput::new(&view, surroundings.origin, air.velocity().as_vec3())
+                ..StepInput::new(&view, step_scenery.origin, air.velocity().as_vec3())
             };
             running.simulation.advance(1.0 / STEPS_PER_S, &moment)?;
             passed(done, all);
         }
         let after_s = (time_s - running.step as f64 / STEPS_PER_S).max(0.0);
         let visible = if scenery.is_still() {
-            running.simulation.visible_after(after_s, &view, running.surroundings.map.as_ref())
+            running.simulation.visible_after(after_s, &view, running.step_scenery.map.as_ref())
         } else {
             // Where things are in this picture; the next step is not told of it.
             let wind = self.weather.wind.air().velocity(time_s).as_vec3();
             let made = self.map(stage, false, &[view], wind, None)?;
             let map = made.as_ref().and_then(|(_, map)| map.as_ref());
-            let map = map.filter(|_| stage.origin == running.surroundings.origin);
-            running.simulation.visible_after(after_s, &view, map.or(running.surroundings.map.as_ref()))
+            let map = map.filter(|_| stage.origin == running.step_scenery.origin);
+            running.simulation.visible_after(after_s, &view, map.or(running.step_scenery.map.as_ref()))
         };
         self.running = Some(running);
         Ok(visible)
@@ -213,12 +213,12 @@ impl Stepped {
         time_s: f64,
     ) -> Result<Option<WindField>, ShowerError> {
         self.begin(scenery)?;
-        Ok(self.surroundings(scenery, time_s, None)?.wind.map(|wind| wind.field))
+        Ok(self.step_scenery(scenery, time_s, None)?.wind.map(|wind| wind.field))
     }
 
     pub(super) fn measured_rate_mm_h(&self) -> f64 {
         let measured =
-            |running: &Running| running.simulation.measured_rate_mm_h(running.surroundings.map.as_ref());
+            |running: &Running| running.simulation.measured_rate_mm_h(running.step_scenery.map.as_ref());
         self.running.as_ref().map_or(0.0, measured)
     }
 
@@ -265,14 +265,14 @@ impl Stepped {
     /// A rain that begins at a step.
     fn started(&self, scenery: &dyn Scenery, step: i64) -> Result<Running, ShowerError> {
         let time_s = step as f64 / STEPS_PER_S;
-        let surroundings = self.surroundings(scenery, time_s, None)?;
+        let step_scenery = self.step_scenery(scenery, time_s, None)?;
         let view = self.view(scenery, time_s)?;
         let air = self.weather.wind.air().prepared(time_s);
         let moment = StepInput {
-            field: surroundings.field(),
-            map: surroundings.map.as_ref(),
+            field: step_scenery.field(),
+            map: step_scenery.map.as_ref(),
             air: Some(&air),
-            ..StepInput::new(&view, surroundings.origin, air.velocity().as_vec3())
+            ..StepInput::new(&view, step_scenery.origin, air.velocity().as_vec3())
         };
         let options = SimulationOptions {
             first_step: (STEP_ZERO + step).clamp(1, i64::from(u32::MAX)) as u32,
@@ -281,16 +281,16 @@ impl Stepped {
             ..self.options.clone()
         };
         let simulation = Simulation::new(&self.law, &options, &moment)?;
-        Ok(Running { simulation, step, surroundings, is_stale: false })
+        Ok(Running { simulation, step, step_scenery, is_stale: false })
     }
 
     /// Wind and map for the steps from a time on until they are made anew.
-    fn surroundings(
+    fn step_scenery(
         &self,
         scenery: &dyn Scenery,
         time_s: f64,
-        before: Option<Surroundings>,
-    ) -> Result<Surroundings, ShowerError> {
+        before: Option<StepScenery>,
+    ) -> Result<StepScenery, ShowerError> {
         let stage = scenery.stage(time_s)?;
         let wind = self.weather.wind.air().velocity(time_s).as_vec3();
         let uniform = self.weather.wind.uniform().is_some();
@@ -302,7 +302,7 @@ impl Stepped {
             vec![at(0.0)?, at(0.5)?, at(1.0)?]
         };
         let before =
-            before.unwrap_or(Surroundings { made_of: None, map: None, wind: None, origin: stage.origin });
+            before.unwrap_or(StepScenery { made_of: None, map: None, wind: None, origin: stage.origin });
         let made = self.map(&stage, scenery.is_still(), &views, wind, before.made_of)?;
         // A field knows the map that it was made with.
         let same_map = matches!(made, Some((_, None))) || (made.is_none() && before.made_of.is_none());
@@ -313,7 +313,7 @@ impl Stepped {
         };
         let wind =
             if uniform { None } else { Some(self.blown(&stage, &views[0], time_s, map.as_ref(), known)?) };
-        Ok(Surroundings { made_of, map, wind, origin: stage.origin })
+        Ok(StepScenery { made_of, map, wind, origin: stage.origin })
     }
 
     /// The map of what stops drops in some views, and what it is made of (of a scene that stands still the options alone say
@@ -321,7 +321,7 @@ impl Stepped {
     #[expect(clippy::type_complexity, reason = "a map and its making")]
     fn map(
         &self,
-        stage: &Stage,
+        stage: &FrameScene,
         still: bool,
         views: &[View],
         wind: Vec3,
@@ -341,7 +341,7 @@ impl Stepped {
     /// The wind at a time in the cells round the eye; what is `known` where it is the same.
     fn blown(
         &self,
-        stage: &Stage,
+        stage: &FrameScene,
         view: &View,
         time_s: f64,
         map: Option<&CollisionMap>,
@@ -367,7 +367,7 @@ impl Stepped {
     /// Part of the scene that the map has to cover; `None` without obstacles.
     fn region(
         &self,
-        stage: &Stage,
+        stage: &FrameScene,
         views: &[View],
         wind: Vec3,
     ) -> Result<Option<CollisionOptions>, ShowerError> {
@@ -387,12 +387,12 @@ impl Stepped {
         // Half of the water falls faster, half slower.
         let speed = self.speeds.at(self.law.median_volume_diameter()).unwrap_or(6.0) as f32;
         let mut options = CollisionOptions::covering(low, high, slanted(wind, speed), [1, 1])?;
-        options.texels = options.size.map(|edge| (edge / TEXEL_M).clamp(16.0, MOST_TEXELS) as u32);
+        options.texels = options.size.map(|edge| (edge / TEXEL_M).clamp(16.0, MAX_TEXELS) as u32);
         Ok(Some(options))
     }
 
     /// A box, relative to the stage's origin, that holds the drops of a view.
-    fn reached(&self, stage: &Stage, view: &View) -> (DVec3, DVec3) {
+    fn reached(&self, stage: &FrameScene, view: &View) -> (DVec3, DVec3) {
         let eye = view.eye - stage.origin;
         match self.options.volume {
             SimVolume::Box { size_m } | SimVolume::Tariq { size_m } => {

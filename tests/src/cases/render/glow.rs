@@ -41,7 +41,7 @@ fn glow_run(gpu: &Gpu, glow: &Glow) -> Result<Run, GpuError> {
         rain,
         drops_on_screen: 0,
         drawn: Vec::new(),
-        surroundings: Vec::new(),
+        environment: Vec::new(),
         through_glass: None,
         glow: Vec::new(),
         passes: Vec::new(),

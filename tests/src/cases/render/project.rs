@@ -15,7 +15,7 @@ use downpour_render::rain::project::{
     project_row, project_seen,
 };
 use downpour_render::rain::{
-    DropMasks, DropsDrop, Exposure, RainOptions, StreakPath, StreakSamples, TemporalResponse,
+    DropMasks, Exposure, RainOptions, ScreenDrop, StreakPath, StreakSamples, TemporalResponse,
 };
 use downpour_shaders::Kernel;
 use downpour_shaders::render::rain::{
@@ -36,7 +36,7 @@ use crate::{FunctionCase, KernelCase, Tol};
 const SIZE: [u32; 2] = [320, 180];
 /// More drops than one row of workgroups has.
 const COUNT: u32 = 9000;
-const WORDS: usize = size_of::<DropsDrop>() / 4;
+const WORDS: usize = size_of::<ScreenDrop>() / 4;
 
 /// Words of a drop that are integers: its samples, its kind, its class, its profile and its id.
 const INTEGERS: [usize; 5] = [11, 33, 34, 35, 39];
@@ -44,7 +44,7 @@ const INTEGERS: [usize; 5] = [11, 33, 34, 35, 39];
 /// A streak on a picture, of any width and speed.
 fn streak_words(random: [u32; 4]) -> Vec<u32> {
     let [a, b, c, d] = random.map(rng_unit);
-    let drop = DropsDrop {
+    let drop = ScreenDrop {
         area: 600.0 * a * a * a,
         along: [0.3 * b, 2.0 * c * c],
         mode_phase: [if random[0].is_multiple_of(3) { 0.0 } else { 0.1 }, 0.0, 0.2, 0.4],
@@ -52,9 +52,9 @@ fn streak_words(random: [u32; 4]) -> Vec<u32> {
         reach: if random[1].is_multiple_of(5) { -1.0 } else { 2.0 },
         kind: random[2] % 3,
         grid: [0, 5, 8][random[3] as usize % 3],
-        ..DropsDrop::default()
+        ..ScreenDrop::default()
     };
-    bytemuck::cast::<DropsDrop, [u32; WORDS]>(drop).to_vec()
+    bytemuck::cast::<ScreenDrop, [u32; WORDS]>(drop).to_vec()
 }
 
 /// Sizes of a profile.
@@ -69,7 +69,7 @@ fn rows(random: [u32; 4]) -> Vec<u32> {
 }
 
 /// A drop of the words.
-fn drop(words: [u32; WORDS]) -> DropsDrop {
+fn drop(words: [u32; WORDS]) -> ScreenDrop {
     bytemuck::cast(words)
 }
 
@@ -148,7 +148,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             },
         ),
         FunctionCase::new("project_axis", &PROJECT, &[Made(shown_words)], AXIS, |a| {
-            let drop: DropsDrop = bytemuck::cast(a.u32s::<WORDS>());
+            let drop: ScreenDrop = bytemuck::cast(a.u32s::<WORDS>());
             project_axis(Vec3::from(a.f32s()), drop.id).words()
         }),
     ]
@@ -265,20 +265,21 @@ fn project_case(gpu: &Gpu, kind: Kind) -> Result<Run, GpuError> {
     let (mut lamps, mut axes) = (Vec::new(), Vec::new());
     for drop in &drops {
         let shown = projector.project_drop(drop);
-        list.push(shown.map_or(DropsDrop { reach: -1.0, ..DropsDrop::default() }, |shown| shown.drop));
+        list.push(shown.map_or(ScreenDrop { reach: -1.0, ..ScreenDrop::default() }, |shown| shown.drop));
         lamps.push(shown.map_or([0.0; 4], |_| project_row(camera.eye, drop)));
         axes.push(shown.map_or([0.0, 1.0, 0.0, 0.0], |shown| project_axis(shown.velocity, drop.id)));
     }
-    list.resize(frame.room as usize, DropsDrop { reach: -1.0, ..DropsDrop::default() });
+    list.resize(frame.room as usize, ScreenDrop { reach: -1.0, ..ScreenDrop::default() });
     lamps.resize(frame.room as usize, [0.0; 4]);
     axes.resize(frame.room as usize, [0.0, 1.0, 0.0, 0.0]);
     if frame.has_axes == 1 {
         lamps.extend(axes);
     }
     // Profiles are compared by themselves.
-    let of_list = |list: &[DropsDrop], rows: &[[f32; 4]]| -> Vec<u32> {
-        let one =
-            |drop: &DropsDrop| bytemuck::cast::<DropsDrop, [u32; WORDS]>(DropsDrop { profile: 0, ..*drop });
+    let of_list = |list: &[ScreenDrop], rows: &[[f32; 4]]| -> Vec<u32> {
+        let one = |drop: &ScreenDrop| {
+            bytemuck::cast::<ScreenDrop, [u32; WORDS]>(ScreenDrop { profile: 0, ..*drop })
+        };
         let mut words: Vec<u32> = list.iter().flat_map(one).collect();
         // As many words as a drop has, so that the kinds repeat.
         words.extend(rows.iter().flat_map(|row| {
@@ -319,7 +320,7 @@ fn profiles_case(
     let projector = Projector::new(&camera, &masks, &options);
     // The device's drops, before they had profiles.
     let streaks = projector.frame().streaks;
-    let mut list: Vec<DropsDrop> = found.list.clone();
+    let mut list: Vec<ScreenDrop> = found.list.clone();
     for drop in &mut list {
         drop.profile = 0;
         drop.kind = if drop.kind == 0 { 0 } else { streaks };
@@ -362,7 +363,7 @@ fn described(
     paths: &[StreakPath],
     ray_jobs: &[[u32; 2]],
     light_jobs: &[[u32; 2]],
-    list: &[DropsDrop],
+    list: &[ScreenDrop],
     first_entry: u32,
 ) -> Vec<u32> {
     let number = |n: u32| (n as f32).to_bits();

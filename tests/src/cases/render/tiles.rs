@@ -3,7 +3,7 @@
 use downpour_gpu::{Gpu, GpuError};
 use downpour_math::rng::rng_draw;
 use downpour_render::gpu::tiles::TilesPipeline;
-use downpour_render::rain::DropsDrop;
+use downpour_render::rain::ScreenDrop;
 use downpour_render::rain::list::seen;
 use downpour_render::rain::tiles::{
     TileLists, TilesFrame, tiles_bound, tiles_columns, tiles_rows, tiles_within,
@@ -26,18 +26,18 @@ const SIZES: [[u32; 2]; 2] = [[317, 201], [320, 192]];
 const SIZE: [u32; 2] = SIZES[0];
 
 /// Words of a drop.
-const WORDS: usize = size_of::<DropsDrop>() / 4;
+const WORDS: usize = size_of::<ScreenDrop>() / 4;
 
 /// A drop on or about a picture. All numbers have few digits in base two and slopes are powers of two, so that both sides compute
 /// without rounding.
-fn drop(random: [u32; 4]) -> DropsDrop {
+fn drop(random: [u32; 4]) -> ScreenDrop {
     let [a, b, c, d] = random;
     // Eighths of a pixel.
     let eighths = |word: u32, range: u32| (word % (8 * range)) as f32 / 8.0;
     let steep = [0.0, 0.25, 1.0, 8.0, -8.0, 64.0, -128.0][(c >> 8) as usize % 7];
-    DropsDrop {
+    ScreenDrop {
         first: [eighths(a, 2 * SIZE[0]) - 60.0, eighths(b, 2 * SIZE[1]) - 40.0],
-        way: [eighths(c, 48) - 24.0, steep],
+        screen_delta: [eighths(c, 48) - 24.0, steep],
         // Some are not on the picture at all, a few cover much of it.
         reach: match d % 16 {
             0 => -1.0,
@@ -48,12 +48,12 @@ fn drop(random: [u32; 4]) -> DropsDrop {
         // So few distances that many are equal.
         nearest: 0.5 + ((d >> 4) % 61) as f32,
         id: (d >> 11) % 1021,
-        ..DropsDrop::default()
+        ..ScreenDrop::default()
     }
 }
 
 fn drop_words(random: [u32; 4]) -> Vec<u32> {
-    bytemuck::cast::<DropsDrop, [u32; WORDS]>(drop(random)).to_vec()
+    bytemuck::cast::<ScreenDrop, [u32; WORDS]>(drop(random)).to_vec()
 }
 
 /// A number of columns or rows.
@@ -120,7 +120,7 @@ fn lists(
     gpu: &Gpu,
     size: [u32; 2],
     room: Option<u32>,
-    (pictures, drops): (u32, fn(u32) -> Vec<DropsDrop>),
+    (pictures, drops): (u32, fn(u32) -> Vec<ScreenDrop>),
 ) -> Result<Run, GpuError> {
     let pipeline = TilesPipeline::new(gpu)?;
     let (mut cpu, mut found) = (Vec::new(), Vec::new());
@@ -147,13 +147,13 @@ fn lists(
     })
 }
 
-fn random_drops<const COUNT: u32>(seed: u32) -> Vec<DropsDrop> {
+fn random_drops<const COUNT: u32>(seed: u32) -> Vec<ScreenDrop> {
     (0..COUNT).map(|k| drop(rng_draw([seed, 5], k, 0, 0))).collect()
 }
 
 /// 2^14 drops of which each covers all of 2^18 tiles: their number is 2^32, which 32 bits hold as 0.
-fn everywhere(seed: u32) -> Vec<DropsDrop> {
-    let one = |k| DropsDrop { first: [2048.0; 2], reach: 3000.0, ..drop(rng_draw([seed, 6], k, 0, 0)) };
+fn everywhere(seed: u32) -> Vec<ScreenDrop> {
+    let one = |k| ScreenDrop { first: [2048.0; 2], reach: 3000.0, ..drop(rng_draw([seed, 6], k, 0, 0)) };
     (0..1 << 14).map(one).collect()
 }
 
@@ -162,7 +162,7 @@ const SEEN: u32 = 9000;
 
 /// Which drops a picture shows whose distances differ from pixel to pixel.
 fn seen_case(gpu: &Gpu) -> Result<Run, GpuError> {
-    let drops: Vec<DropsDrop> = (0..SEEN).map(|k| drop(rng_draw([8, 5], k, 0, 0))).collect();
+    let drops: Vec<ScreenDrop> = (0..SEEN).map(|k| drop(rng_draw([8, 5], k, 0, 0))).collect();
     let pixel = |k| [0.0, 0.0, 0.0, rng_draw([9, 5], k / 40, 0, 0).map(|word| word % 64)[0] as f32];
     let clean: Vec<[f32; 4]> = (0..SIZE[0] * SIZE[1]).map(pixel).collect();
     let distances: Vec<f32> = drops.iter().map(|drop| seen(drop, &clean, SIZE)).collect();

@@ -6,8 +6,8 @@ use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_render::gpu::{TonePipeline, TonedLayers};
 use downpour_render::picture::compose_pixel;
 use downpour_render::tone::{
-    ToneCurve, tone_compressed, tone_hue, tone_lifted, tone_linear, tone_luminance, tone_neutral,
-    tone_number, tone_oklab, tone_pixel, tone_srgb, tone_whiteness, tone_with_hue, tone_within,
+    ToneCurve, tone_compressed, tone_hue, tone_lifted, tone_linear, tone_neutral, tone_number, tone_oklab,
+    tone_pixel, tone_srgb, tone_whiteness, tone_with_hue, tone_within,
 };
 use downpour_shaders::render::tone::{TONE, TONE_KERNEL, TONE_START};
 use glam::Vec3;
@@ -78,13 +78,6 @@ pub(super) fn functions() -> Vec<FunctionCase> {
     let rounded = |what| Tol::relative(4.0e-6, 4.0e-6, what);
     let power = |what| Tol::relative(3.0e-5, 3.0e-5, what);
     vec![
-        FunctionCase::new(
-            "tone_luminance",
-            &TONE,
-            &[Uniform(0.0, 9.0); 3],
-            rounded("a sum of three products"),
-            |a| tone_luminance(a.f32s::<3>().into()).words(),
-        ),
         FunctionCase::new(
             "tone_lifted",
             &TONE,

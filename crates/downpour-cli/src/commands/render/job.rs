@@ -4,7 +4,7 @@ use std::fmt::{self, Write as _};
 
 use downpour::atlas::StreakAtlas;
 use downpour::scene::picture::Pixels;
-use downpour::trace::stage::Stage;
+use downpour::trace::stage::FrameScene;
 use downpour::weather::{Loaded, Weather};
 use sha2::{Digest as _, Sha256};
 
@@ -30,7 +30,7 @@ pub(super) fn atlas_digest(atlas: &StreakAtlas) -> String {
 
 /// Digest of a scene: its buffers and its camera at the first frame, the weather, and the
 /// animations of the scene.
-pub(super) fn scene_digest(weather: &Weather, loaded: &Loaded, first: &Stage) -> String {
+pub(super) fn scene_digest(weather: &Weather, loaded: &Loaded, first: &FrameScene) -> String {
     let mut sum = Sha256::new();
     let data = &first.data;
     let buffers: [&[u8]; 6] = [

@@ -1,12 +1,12 @@
 //! The light of lamps on unresolved drops, smoothed where it is shadowed. Twin of
 //! `shaders/wgsl/render/medium_filter.wgsl`, where the method is described.
 
+use downpour_math::packing::packing_pack_half;
 use downpour_shaders::render::medium::MEDIUM_LAMP_REACH;
 use downpour_shaders::render::scene::SKYLIGHT_RADIUS;
 use glam::{Vec3, Vec4};
 
 use super::light::MediumLight;
-use crate::halves::pack;
 use crate::light::light_weight;
 
 /// Weight of a neighbor, 0 to 1: 1 if its ray is as long, 0 from a relative difference of 20 %.
@@ -26,7 +26,7 @@ impl MediumLight<'_> {
         };
         let index = y * width + x;
         let (own, seen) = rows(index);
-        let packed = f32::from_bits(pack([seen.w.min(6.0e4), own.w.min(6.0e4)]));
+        let packed = f32::from_bits(packing_pack_half([seen.w.min(6.0e4), own.w.min(6.0e4)]));
         if light_weight(own.truncate()) <= 0.0 {
             return Vec3::ZERO.extend(packed);
         }
