@@ -35,7 +35,7 @@ const ELSEWHERE: [(&[&str], &str); 10] = [
         "the GPU steps tiles with a halo in workgroup memory, the CPU rows in lanes (downpour_lattice::puddle::step)",
     ),
     (
-        &["field_carried", "field_chain", "field_meets", "field_product", "field_shows"],
+        &["field_beyond", "field_carried", "field_chain", "field_meets", "field_product", "field_shows"],
         "the CPU computes in f64 and in wide integers, in the world (downpour_sim::field, drift and view)",
     ),
     (&["shelter_carried"], "downpour_sim::drift"),

@@ -5,6 +5,7 @@ use downpour_shaders::sim::field::FIELD_SPLASH;
 use glam::{DVec3, Vec3};
 
 use crate::resolved::Resolved;
+use crate::view::View;
 
 /// Origin of a drop.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -63,6 +64,28 @@ impl FallingDrop {
         let [begin, end] = self.present_s;
         if end < 0.0 { end } else { begin.max(0.0) }
     }
+
+    /// The drop in the part of an exposure of `shutter_s` in which it is beyond a pane that moves with the camera;
+    /// `None` if it is not. `outward` and `distance` are the pane's unit normal, away from the eye, and its distance
+    /// from the eye, m. A splash counts by its position at the picture's time.
+    #[must_use]
+    pub fn beyond(&self, outward: Vec3, distance: f32, view: &View) -> Option<Self> {
+        let half_time = if self.kind == DropKind::Splash { 0.0 } else { (0.5 * view.shutter_s) as f32 };
+        let (drop, velocity, turning) =
+            (EyeDrop::new(self, view.eye), view.velocity.as_vec3(), view.turning.as_vec3());
+        let [open, close] = [-half_time, half_time]
+            .map(|time| drop.eye_drop_position(velocity, turning, time).dot(outward) - distance);
+        let [begin, end] = field_outside(open, close, half_time).map(forever);
+        let mut kept = *self;
+        kept.present_s = [self.present_s[0].max(begin), self.present_s[1].min(end)];
+        kept.position += (Vec3::from(self.velocity) * (kept.seen_s() - self.seen_s())).as_dvec3();
+        (kept.present_s[0] <= kept.present_s[1]).then_some(kept)
+    }
+}
+
+/// A time of [`EyeDrop::present`] with infinities.
+fn forever(time: f32) -> f32 {
+    if time.abs() < ALWAYS_S { time } else { time * f32::INFINITY }
 }
 
 /// Numbers beyond these are as good as infinite, s: shaders have no infinities.
@@ -113,9 +136,7 @@ impl EyeDrop {
             diameter: self.diameter,
             id: u64::from(self.id ^ self.id_low) << 32 | u64::from(self.id_low),
             kind,
-            present_s: self
-                .present
-                .map(|time| if time.abs() < ALWAYS_S { time } else { time * f32::INFINITY }),
+            present_s: self.present.map(forever),
         };
         drop.position += (Vec3::from(self.velocity) * drop.seen_s()).as_dvec3();
         drop
@@ -128,6 +149,25 @@ impl EyeDrop {
         let moved = Vec3::from(self.offset) + (Vec3::from(self.velocity) - velocity) * time;
         eye_drop_turned(moved, turning * -time)
     }
+}
+
+/// Part of the exposure, s from its middle, in which a drop is beyond a pane, from its distances beyond it at the begin and
+/// the end, m; the first time is above the last if it never is. Twin of the function of this name in
+/// `shaders/wgsl/sim/field.wgsl`.
+#[must_use]
+pub fn field_outside(begin: f32, end: f32, half_time: f32) -> [f32; 2] {
+    let mut part = [-ALWAYS_S, ALWAYS_S];
+    if begin < 0.0 && end < 0.0 {
+        return [ALWAYS_S, -ALWAYS_S];
+    }
+    let crossing = half_time * ((begin + end) / (begin - end).abs().max(1.0e-30));
+    if begin < 0.0 {
+        part[0] = -crossing;
+    }
+    if end < 0.0 {
+        part[1] = crossing;
+    }
+    part
 }
 
 /// A vector turned about an axis by the axis's length, in radians.

@@ -55,9 +55,9 @@ use crate::SimError;
 use crate::drift::Drift;
 #[doc(hidden)]
 pub use crate::drift::drift_position;
-#[doc(hidden)]
-pub use crate::falling::eye_drop_turned;
 pub use crate::falling::{DropKind, EyeDrop, FallingDrop, VisibleDrops};
+#[doc(hidden)]
+pub use crate::falling::{eye_drop_turned, field_outside};
 use crate::resolved::Resolved;
 use crate::shelter::{Obstacles, keep_open};
 use crate::view::{Bounds, View, within};

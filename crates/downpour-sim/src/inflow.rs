@@ -128,7 +128,7 @@ fn of(
             begin: begin as f32,
             end: end as f32,
             slope: slope as f32,
-            width: width.max(0.0) as f32,
+            width: width as f32,
             middle: middle as f32,
             ..EnterRegion::default()
         };

@@ -24,7 +24,7 @@ pub struct EnterRegion {
     pub end: f32,
     /// Increase of half the width per m along the tangent. For the ball, 1 - cos of the cone's half angle.
     pub slope: f32,
-    /// Half the width at the eye, m.
+    /// Half the width at the eye, m; below 0 where a margin takes the plane away from the view.
     pub width: f32,
     /// Center across, m.
     pub middle: f32,

@@ -1,11 +1,13 @@
 //! Rain in volumes that follow a camera: counted, uniform, and independent of the step length.
 
+use downpour_bvh::Bvh;
 use downpour_drop::air::Air;
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_drop::fall_speed::{FallSpeedModel, terminal_speed};
 use downpour_math::ops::f64 as ops;
 use downpour_sim::SimError;
-use downpour_sim::simulation::{Drag, Gauge, SimVolume, Simulation, SimulationOptions, StepInput};
+use downpour_sim::collision::{CollisionMap, CollisionOptions};
+use downpour_sim::simulation::{Bounce, Drag, Gauge, SimVolume, Simulation, SimulationOptions, StepInput};
 use downpour_sim::view::View;
 use downpour_wind::{
     WindCore, WindField, WindForm, WindGrid, WindMask, WindPrimitive, WindSingularity, WindUniform,
@@ -322,4 +324,107 @@ fn too_many_drops_say_what_they_need() {
         error.to_string().starts_with("1000000000 drops need 31.7 GiB; allowed: up to 268435456"),
         "{error}"
     );
+}
+
+/// A floor at height 0, as a map of what stops drops.
+fn floor() -> CollisionMap {
+    let corner = |x: f32, z: f32| [12.0 * x, 0.0, 12.0 * z];
+    let corners = [corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)];
+    let triangles = [[corners[0], corners[1], corners[2]], [corners[0], corners[2], corners[3]]];
+    let options = CollisionOptions { size: [20.0; 2], texels: [200; 2], ..CollisionOptions::default() };
+    CollisionMap::new(&options, &Bvh::new(&triangles)).expect("a map")
+}
+
+/// Volumes, m^3, of the parts of a picture between heights, in which drops are on average during an exposure that fall at
+/// `speed` and are within `range` of the eye in its middle.
+fn bands<const N: usize>(view: &View, range: f64, speed: f64, heights: [[f64; 2]; N]) -> [f64; N] {
+    let (cells, steps, times) = (40, 40, 6);
+    let at = |k: u32, half: f64| half * (2.0 * (f64::from(k) + 0.5) / f64::from(cells) - 1.0);
+    let farthest = range + 0.5 * speed * view.shutter_s;
+    let area = 4.0 * view.half_width * view.half_height / f64::from(cells * cells);
+    let mut volumes = [0.0; N];
+    for k in 0..cells * cells {
+        let across = view.right * at(k % cells, view.half_width) + view.up * at(k / cells, view.half_height);
+        let (ray, length) = ((view.forward + across).normalize(), (view.forward + across).length());
+        for step in 0..steps {
+            let distance = farthest * (f64::from(step) + 0.5) / f64::from(steps);
+            let offset = ray * distance;
+            let volume =
+                area / (length * length * length) * distance * distance * farthest / f64::from(steps);
+            let band =
+                heights.iter().position(|[low, high]| (*low..*high).contains(&(view.eye.y + offset.y)));
+            let Some(band) = band else { continue };
+            let in_range = (0..times).filter(|&time| {
+                let time_s = view.shutter_s * ((f64::from(time) + 0.5) / f64::from(times) - 0.5);
+                (offset + DVec3::Y * (speed * time_s)).length() < range
+            });
+            volumes[band] += volume * in_range.count() as f64 / f64::from(times);
+        }
+    }
+    volumes
+}
+
+/// Drops that land while the shutter is open are listed until they do, and cover the picture down to the floor.
+#[test]
+fn drops_that_land_during_the_exposure_are_there_until_they_do() {
+    let (map, shutter_s, wait_s) = (floor(), 0.075, 1.0 / 60.0);
+    let view = View { shutter_s, ..looking(DVec3::new(0.0, 0.5, 0.0), 0.0, 0.0) };
+    let options = SimulationOptions {
+        shutter_s,
+        wait_s,
+        bounce: Bounce { fraction: 0.0, ..Bounce::default() },
+        ..SimulationOptions::default()
+    };
+    let now = StepInput { map: Some(&map), ..input(&view, Vec3::ZERO) };
+    let mut simulation = Simulation::new(&rain(50.0), &options, &now).expect("in range");
+    let heights = [[0.0, 0.05], [0.05, 0.15], [0.15, 0.3], [0.3, 0.6], [0.6, 1.2]];
+    let (mut covered, mut landed, states, times) = ([0.0; 5], [0; 2], 5, 16);
+    let half = 0.5 * shutter_s;
+    for _ in 0..states {
+        for _ in 0..40 {
+            simulation.advance(1.0 / 60.0, &now).expect("in range");
+        }
+        for drop in &simulation.visible_after(half + 0.5 * wait_s, &view, Some(&map)).drops {
+            let velocity = Vec3::from(drop.velocity).as_dvec3();
+            let at = |time: f64| drop.position + velocity * (time - f64::from(drop.seen_s()));
+            let lands = at(0.0).y / -velocity.y;
+            let until = f64::from(drop.present_s[1]);
+            if lands < half {
+                assert!((until - lands).abs() < 1.0e-4, "{drop:?} lands after {lands} s");
+                landed[usize::from(lands < 0.0)] += 1;
+            } else {
+                assert_eq!(until, f64::INFINITY, "{drop:?} lands after {lands} s");
+            }
+            for k in 0..times {
+                let time = half * ((2.0 * f64::from(k) + 1.0) / f64::from(times) - 1.0);
+                let (at, offset) = (at(time), at(time) - view.eye);
+                let depth = offset.dot(view.forward);
+                let is_seen = time < until
+                    && offset.dot(view.right).abs() < depth * view.half_width
+                    && offset.dot(view.up).abs() < depth * view.half_height;
+                let band = heights.iter().position(|[low, high]| (*low..*high).contains(&at.y));
+                if let (true, Some(band)) = (is_seen, band) {
+                    covered[band] += 1.0 / f64::from(times);
+                }
+            }
+        }
+    }
+    println!("{landed:?} land after the middle of the exposure, and before");
+    assert!(landed[0] > 200 && landed[1] > 200, "{landed:?}");
+    let (rain, air, sizes) = (rain(50.0), Air::standard(), 60);
+    let mut expected = [0.0; 5];
+    for k in 0..sizes {
+        let d = 0.1e-3 + 7.9e-3 * (f64::from(k) + 0.5) / f64::from(sizes);
+        let range = (d / (view.pixel_angle * view.least_pixels)).min(view.far);
+        let speed = terminal_speed(FallSpeedModel::Beard1976, d, &air).expect("in range");
+        let drops = rain.concentration(d) * 7.9e-3 / f64::from(sizes) * f64::from(states);
+        for (sum, volume) in expected.iter_mut().zip(bands(&view, range, speed, heights)) {
+            *sum += drops * volume;
+        }
+    }
+    for ((found, expected), heights) in covered.iter().zip(expected).zip(heights) {
+        println!("{heights:?} m: {found:.1} of {expected:.1} drops");
+        assert!(expected > 100.0);
+        assert!((found - expected).abs() < 4.0 * expected.sqrt(), "{heights:?} m: {found}, not {expected}");
+    }
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
+use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw, ExtinctionEfficiency};
 use downpour_math::ops::f64 as ops;
 use downpour_render::camera::Viewpoint;
 use downpour_render::light::LightSource;
@@ -325,18 +325,18 @@ fn there_is_no_unresolved_rain_under_a_roof() -> Outcome {
     Ok(())
 }
 
-/// Mean over the middle of pictures of one rain: light of the rain, and what it takes out.
-fn middle(
+/// Means over pictures of one rain, of the middle of 4 degrees and of all: light of the rain, and what it takes out.
+fn means(
     scene: &SceneData,
     fov_deg: f64,
     lines: u32,
     rate: f64,
     seeds: u64,
-) -> Result<[f64; 2], Box<dyn std::error::Error>> {
+) -> Result<[[f64; 2]; 2], Box<dyn std::error::Error>> {
     let masks = masks();
     let fov = fov_deg.to_radians();
     let (half, inner) = (ops::tan(0.5 * fov), ops::tan(2f64.to_radians()));
-    let mut sums = [0.0; 2];
+    let mut sums = [[0.0; 2]; 2];
     for seed in 0..seeds {
         let seen = View {
             half_width: half,
@@ -362,20 +362,24 @@ fn middle(
             ..PictureOptions::default()
         };
         let picture = render_picture(scene, &view(fov as f32), &visible.drops, masks, &options)?;
-        let (mut sum, mut count) = ([0.0; 2], 0.0);
-        for (i, pixel) in picture.rain.iter().enumerate() {
-            let at = |k: u32| ((f64::from(k) + 0.5) / f64::from(lines) * 2.0 - 1.0) * half;
-            let (x, y) = (at(i as u32 % lines), at(i as u32 / lines));
-            if x.abs() < inner && y.abs() < inner {
-                sum[0] += f64::from(pixel[1]);
-                sum[1] += f64::from(1.0 - pixel[3]);
-                count += 1.0;
-            }
+        for (sum, edge) in sums.iter_mut().zip([inner, f64::INFINITY]) {
+            let within = |i: usize| {
+                let at = |k: u32| ((f64::from(k) + 0.5) / f64::from(lines) * 2.0 - 1.0) * half;
+                at(i as u32 % lines).abs() < edge && at(i as u32 / lines).abs() < edge
+            };
+            let pixels = || picture.rain.iter().enumerate().filter(|(i, _)| within(*i));
+            let weight = 1.0 / (pixels().count() as f64 * seeds as f64);
+            sum[0] += weight * pixels().map(|(_, pixel)| f64::from(pixel[1])).sum::<f64>();
+            sum[1] += weight * pixels().map(|(_, pixel)| f64::from(1.0 - pixel[3])).sum::<f64>();
         }
-        sums[0] += sum[0] / count / seeds as f64;
-        sums[1] += sum[1] / count / seeds as f64;
     }
     Ok(sums)
+}
+
+/// Mean of a function of the direction over a square picture, half as wide as `half` at distance 1.
+fn mean_over(half: f64, f: impl Fn(DVec3) -> f64) -> f64 {
+    integral(-half, half, 12, |x| integral(-half, half, 12, |y| f(DVec3::new(x, y, -1.0))))
+        / (4.0 * half * half)
 }
 
 /// The mean light of a lamp's glow, and what the rain takes out, whether three drops in a hundred are drawn or nearly all.
@@ -400,13 +404,90 @@ fn the_same_rain_is_as_bright_from_every_view() -> Outcome {
     let taken = 1.0 - ops::exp(-covered(50.0) * 20.0);
     for (fov, lines, seeds) in [(40.0, 60, 2), (40.0, 240, 2), (20.0, 160, 3), (10.0, 160, 4), (4.5, 160, 6)]
     {
-        let [light, out] = middle(&scene, fov, lines, 50.0, seeds)?;
+        let [[light, out], _] = means(&scene, fov, lines, 50.0, seeds)?;
         println!(
             "{fov} degrees, {lines} lines: light {light:.4} of {truth:.4}, taken {out:.4} of {taken:.4}"
         );
         assert!((light / truth - 1.0).abs() < 0.08, "{fov} degrees, {lines} lines: {light}, not {truth}");
         assert!((out / taken - 1.0).abs() < 0.06, "{fov} degrees, {lines} lines: {out}, not {taken}");
     }
+    Ok(())
+}
+
+/// Without a wall, before a black sky: the light of a lamp 12 m away that rain scatters on the whole ray.
+#[test]
+fn rain_before_a_black_sky_is_as_bright_from_every_view() -> Outcome {
+    let lamp = DVec3::new(0.4, 1.6, -12.0);
+    let mut builder = SceneBuilder::new();
+    builder.add_light(LightSource::Point {
+        radius: 0.0,
+        position: lamp.as_vec3(),
+        intensity: Vec3::splat(1000.0),
+        range: 0.0,
+    });
+    let scene = builder.build(&SkyLight::uniform([0.0; 3]));
+    let (phase, sigma) = (phase(), covered(50.0));
+    let truth = |half: f64| {
+        mean_over(half, |direction| 1000.0 * scattered(&phase, sigma, lamp, direction.normalize(), 1000.0))
+    };
+    let of_middle = truth(ops::tan(2f64.to_radians()));
+    for (fov, lines, seeds) in [(40.0, 60, 3), (40.0, 240, 2), (20.0, 160, 3), (10.0, 160, 4)] {
+        let [[light, _], [all, _]] = means(&scene, fov, lines, 50.0, seeds)?;
+        let of_all = truth(ops::tan((0.5 * fov).to_radians()));
+        println!(
+            "{fov} degrees, {lines} lines: {light:.4} of {of_middle:.4} in the middle, {all:.4} of {of_all:.4} in all"
+        );
+        assert!(
+            (light / of_middle - 1.0).abs() < 0.08,
+            "{fov} degrees, {lines} lines: {light}, not {of_middle}"
+        );
+        assert!((all / of_all - 1.0).abs() < 0.05, "{fov} degrees, {lines} lines: {all}, not {of_all}");
+    }
+    Ok(())
+}
+
+/// The light of the sun that rain scatters before a black sky, from the side and from ahead. Rain beyond 50 m belongs to the
+/// sky.
+#[test]
+fn rain_in_the_sun_is_as_bright_from_every_view() -> Outcome {
+    let phase = phase();
+    for travels in [DVec3::new(0.9, -0.4, 0.1), DVec3::new(-0.3, -0.6, 0.7)] {
+        let travels = travels.normalize();
+        let mut builder = SceneBuilder::new();
+        builder.add_light(LightSource::Directional {
+            direction: travels.as_vec3(),
+            irradiance: Vec3::splat(10.0),
+        });
+        let scene = builder.build(&SkyLight::uniform([0.0; 3]));
+        let truth = |half: f64| {
+            mean_over(half, |direction| {
+                let angle = ops::acos((-travels.dot(direction.normalize())).clamp(-1.0, 1.0));
+                10.0 * phase(angle) * (1.0 - ops::exp(-covered(50.0) * 50.0))
+            })
+        };
+        let of_middle = truth(ops::tan(2f64.to_radians()));
+        for (fov, lines, seeds) in [(40.0, 60, 2), (40.0, 240, 2), (10.0, 160, 3)] {
+            let [[light, _], [all, _]] = means(&scene, fov, lines, 50.0, seeds)?;
+            let of_all = truth(ops::tan((0.5 * fov).to_radians()));
+            let name = format!("{fov} degrees, {lines} lines");
+            println!("{name}: {light:.5} of {of_middle:.5} in the middle, {all:.5} of {of_all:.5} in all");
+            assert!((light / of_middle - 1.0).abs() < 0.05, "{name}: {light}, not {of_middle}");
+            assert!((all / of_all - 1.0).abs() < 0.04, "{name}: {all}, not {of_all}");
+        }
+    }
+    Ok(())
+}
+
+/// With the total efficiency rain takes out twice what it covers.
+#[test]
+fn the_total_efficiency_takes_out_twice() -> Outcome {
+    let distance = 20.0;
+    let scene = walled(distance as f32, &[], [1.0; 3]);
+    let options = MediumOptions { efficiency: ExtinctionEfficiency::Total, ..MediumOptions::default() };
+    let medium = RainMedium::new(&law(25.0), &nothing_drawn(), masks(), &options)?;
+    let found = -ops::ln(f64::from(layer(&scene, &view(0.02), [4, 2], medium, masks())[5][3]));
+    let expected = 2.0 * covered(25.0) * distance;
+    assert!((found / expected - 1.0).abs() < 0.015, "{found}, not {expected}");
     Ok(())
 }
 

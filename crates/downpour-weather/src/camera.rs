@@ -232,6 +232,10 @@ impl Camera {
             let found = format!("{nearest} m to {farthest} m");
             return Err(positions.bad(key, found, "near_m below far_m"));
         }
+        if table.focus_m.is_some() && table.aperture_mm.is_none() {
+            let found = "a distance in focus of a lens in which all is in focus";
+            return Err(positions.bad("camera.focus_m", found, "with aperture_mm"));
+        }
         let observer = table.observer.unwrap_or_default();
         let camera = Self {
             path: table.path(positions)?,

@@ -19,10 +19,12 @@ use super::streaks::StreaksTable;
 use super::wetness::{Wetness, WetnessTable};
 use super::wind::{self, GustsTable, TurbulenceTable, WindFieldTable, WindTable};
 use super::{
-    Camera, CameraPath, MAX_DRIPS, MAX_LIGHTS, MAX_MODELS, MAX_PUDDLES, Weather, camera::CameraTable,
+    Camera, CameraPath, MAX_DRIPS, MAX_LIGHTS, MAX_MODELS, MAX_PUDDLES, RainDrag, RainVolume, Weather,
+    camera::CameraTable,
 };
 use downpour_scene::error::{SceneError, quoted};
 use downpour_scene::uri::{Address, RelativePath, check};
+use downpour_wind::Wind;
 use serde::Deserialize;
 
 /// Maximum length of a file path, in bytes.
@@ -94,7 +96,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         let allowed = "false, or a rate without keys";
         return Err(positions.bad("drips.enabled", "drips of a rain whose rate changes", allowed));
     }
-    let streaks = tables.streaks.checked();
+    let streaks = tables.streaks.checked(rain.drop_light, &positions)?;
     let drop_model = tables.rain.drop_model(&streaks, &positions)?;
     let default = Weather::default();
     let puddles = numbered(&tables.puddle, |i, table| Puddle::checked(i, table, &positions))?;
@@ -105,7 +107,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
     Ok(Weather {
         name: String::new(),
         wetness: Wetness::checked(&tables.wetness, &rain, &positions)?,
-        splashes: Splashes::checked(&tables.splashes, &positions)?,
+        splashes: Splashes::checked(&tables.splashes, is_closed_form(&rain, &wind), &positions)?,
         drips: Drips::checked(&tables.drips, &tables.drip),
         lightning: Lightning::checked(&tables.lightning, &tables.flash, rain.seed, &positions)?,
         glass: tables.glass.map(|glass| glass.checked(&heaviest, is_still, &positions)).transpose()?,
@@ -118,13 +120,22 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         camera,
         models: numbered(&tables.model, |i, table| Model::checked(i, table, &positions))?,
         lights,
+        wind_box: tables.wind_field.checked(&wind, &positions)?,
         wind,
-        wind_box: tables.wind_field.checked(&positions)?,
         streaks,
         puddles,
         keys: WeatherKeys::new(rates, camera_keys, sky_keys, sun_keys, lamp_keys, fills),
         size: tables.output.size.map_or(default.size, |Exactly(size)| size.map(|Whole(side)| side)),
     })
+}
+
+/// True if drops are found in closed form; `volume = "closed-form"` in another wind is an error of the rain.
+fn is_closed_form(rain: &Rain, wind: &Wind) -> bool {
+    match rain.volume {
+        RainVolume::ClosedForm => true,
+        RainVolume::Auto => rain.drag == RainDrag::Relaxation && wind.uniform().is_some(),
+        _ => false,
+    }
 }
 
 /// The tables of a file with those of its preset, if it names one.

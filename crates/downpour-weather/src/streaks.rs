@@ -1,6 +1,9 @@
 //! `[streaks]`.
 
+use super::RainDropLight;
+use super::fault::Positions;
 use super::quantity::{Amplitude, Exactly, In};
+use downpour_scene::error::SceneError;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, Visitor};
 use std::fmt;
@@ -55,13 +58,24 @@ pub(super) struct StreaksTable {
 }
 
 impl StreaksTable {
-    pub(super) fn checked(&self) -> Streaks {
+    /// Rejects an atlas of the light of lamps beside another form of that light.
+    pub(super) fn checked(
+        &self,
+        drop_light: RainDropLight,
+        positions: &Positions<'_>,
+    ) -> Result<Streaks, SceneError> {
         let usual = Streaks::default();
-        Streaks {
+        let of_atlas = matches!(self.color, Some(StreakLook::Atlas | StreakLook::AtlasRandom));
+        if of_atlas && drop_light != RainDropLight::Traced {
+            let found = "the light of lamps from an atlas, beside another rain.drop_light";
+            let allowed = "\"refracted\" or \"white\", or an atlas with rain.drop_light = \"traced\"";
+            return Err(positions.bad("streaks.color", found, allowed));
+        }
+        Ok(Streaks {
             samples: self.samples.map_or(usual.samples, |Samples(samples)| samples),
             look: self.color.unwrap_or_default(),
             oscillation: self.oscillation.map_or(usual.oscillation, Exactly::numbers),
-        }
+        })
     }
 }
 

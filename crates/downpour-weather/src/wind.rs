@@ -140,13 +140,24 @@ pub(super) struct WindFieldTable {
 }
 
 impl WindFieldTable {
-    pub(super) fn checked(&self, positions: &Positions<'_>) -> Result<WindBox, SceneError> {
+    /// Rejects a grid of a wind that needs none.
+    pub(super) fn checked(&self, wind: &Wind, positions: &Positions<'_>) -> Result<WindBox, SceneError> {
         let default = WindBox::default();
         let size = self.size.map_or(default.size, |Exactly(size)| size.map(|Whole(cells)| cells));
         let cells: u64 = size.iter().map(|&n| u64::from(n)).product();
         if cells > WIND_GRID_CELLS {
             let found = format!("{cells} cells");
             return Err(positions.limit("wind_field.size", found, format!("at most {WIND_GRID_CELLS}")));
+        }
+        let given = [
+            ("wind_field.size", self.size.is_some()),
+            ("wind_field.box_m", self.box_m.is_some()),
+            ("wind_field.center_m", self.center_m.is_some()),
+        ];
+        if let (Some(_), Some((key, _))) = (wind.uniform(), given.into_iter().find(|(_, given)| *given)) {
+            let found = "a grid for a wind that is the same everywhere";
+            let allowed = "with [turbulence], or a source, sink, vortex or tornado in [[wind]]";
+            return Err(positions.bad(key, found, allowed));
         }
         Ok(WindBox {
             size,

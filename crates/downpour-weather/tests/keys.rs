@@ -29,6 +29,7 @@ yaw_deg = [[0, 0], [10, 180]]
 pitch_deg = [[0, 0], [10, 30]]
 fov_deg = [[0, 20], [10, 60]]
 exposure_ev = [[0, 1], [10, 3]]
+aperture_mm = 20
 focus_m = [[0, 1], [10, 3]]
 [[light]]
 point = { position_m = [[0, [0, 1, 0]], [10, [4, 1, 0]]], color = [[0, [1, 1, 1]], [10, [0, 0, 0]]], intensity_cd = [[0, 10], [10, 30]] }

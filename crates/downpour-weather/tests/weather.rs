@@ -676,3 +676,31 @@ fn a_wrong_byte_is_refused_or_read() {
     }
     assert!(read > ALL.len() / 100, "{read}");
 }
+
+/// A distance in focus needs a lens that blurs.
+#[test]
+fn a_focus_without_an_aperture_is_refused() {
+    let told = "line 2, column 1: camera.focus_m: a distance in focus of a lens in which all is in focus; allowed: with aperture_mm";
+    refused("[camera]\nfocus_m = 3", 2, told);
+    refused("[camera]\nfocus_m = [[0, 1], [2, 3]]", 2, told);
+    let camera = parse("[camera]\nfocus_m = 3\naperture_mm = 20").unwrap().camera;
+    assert_eq!((camera.focus, camera.aperture), (Some(3.0), 0.02));
+    // Who writes 0 knows that all is in focus.
+    assert_eq!(parse("[camera]\nfocus_m = 3\naperture_mm = 0").unwrap().camera.aperture, 0.0);
+}
+
+/// The light of lamps is of an atlas or of another form.
+#[test]
+fn an_atlas_beside_another_light_of_drops_is_refused() {
+    for color in ["atlas", "atlas-random"] {
+        for light in ["rousseau-2006", "im-sung-2022", "none"] {
+            refused(
+                &format!("[rain]\ndrop_light = \"{light}\"\n[streaks]\ncolor = \"{color}\""),
+                2,
+                "line 4, column 1: streaks.color: the light of lamps from an atlas, beside another rain.drop_light; allowed: ",
+            );
+        }
+        assert!(parse(&format!("[rain]\ndrop_light = \"traced\"\n[streaks]\ncolor = \"{color}\"")).is_ok());
+    }
+    assert!(parse("[rain]\ndrop_light = \"none\"\n[streaks]\ncolor = \"white\"").is_ok());
+}

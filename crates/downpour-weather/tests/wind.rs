@@ -333,3 +333,25 @@ fn a_wrong_byte_is_refused_or_read() {
     }
     assert!(read > ALL.len() / 100, "{read}");
 }
+
+/// A grid of a wind that is the same everywhere does nothing: who gives one is told so.
+#[test]
+fn a_grid_of_a_uniform_wind_is_refused() {
+    let uniform = "[[wind]]\nuniform = { speed_m_s = 3, towards_deg = 40 }\n[gusts]\nintensity = 0.2\n";
+    for key in ["size = [8, 8, 8]", "box_m = [9, 9, 9]", "center_m = [0, 1, 0]"] {
+        let name = key.split(' ').next().unwrap();
+        refused(
+            &format!("{uniform}[wind_field]\n{key}"),
+            2,
+            &format!(
+                "w.toml: line 6, column 1: wind_field.{name}: a grid for a wind that is the same everywhere; allowed: with [turbulence]"
+            ),
+        );
+        refused(&format!("[wind_field]\n{key}"), 2, &format!("wind_field.{name}: a grid for a wind"));
+        let vortex = "[[wind]]\nvortex = { strength_m2_s = 9, center_m = [0, 0, 0] }\n";
+        for wind in [vortex, "[turbulence]\nspeed_m_s = 1\n"] {
+            assert!(parse(&format!("{wind}[wind_field]\n{key}")).is_ok(), "{wind}");
+        }
+    }
+    assert!(parse(&format!("{uniform}[wind_field]")).is_ok(), "an empty table asks for nothing");
+}

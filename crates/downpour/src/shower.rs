@@ -10,7 +10,7 @@ use std::sync::Arc;
 use downpour_drop::distribution::{DropSizeDistribution, ExtinctionEfficiency};
 use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_drop::splash::SplashLaw;
-use downpour_sim::field::{EyeDrop, FallingDrop, RainField, VisibleDrops};
+use downpour_sim::field::{FallingDrop, RainField, VisibleDrops};
 use downpour_sim::impacts::SplashOptions;
 use downpour_sim::resolved::Resolved;
 use downpour_sim::shelter::Obstacles;
@@ -190,7 +190,7 @@ impl Shower {
         visible.drops.extend(dripped);
         // A pane keeps the rain outside.
         if let Some(pane) = pane_plane(&self.weather, &stage.viewpoint)? {
-            keep_outside(&mut visible.drops, &pane, stage.view()?.eye);
+            keep_outside(&mut visible.drops, &pane, &view);
         }
         Ok(visible)
     }
@@ -225,7 +225,7 @@ impl Shower {
         }
         let pane = pane_plane(&self.weather, &stage.viewpoint)?;
         if let Some(pane) = &pane {
-            keep_outside(&mut droplets, pane, view.eye);
+            keep_outside(&mut droplets, pane, &view);
         }
         let field = Arc::clone(field);
         Ok(Some(ShowerView { field, time_s, view, resolved, pane, droplets, splashes: on_device }))
@@ -301,9 +301,13 @@ fn obstacles(stage: &FrameScene) -> Obstacles<'_> {
     }
 }
 
-/// Removes the drops that would be on the eye's side of a pane at the time of the picture.
-fn keep_outside(drops: &mut Vec<FallingDrop>, pane: &PanePlane, eye: DVec3) {
-    drops.retain(|drop| !pane.is_before(EyeDrop::new(drop, eye).offset.into()));
+/// Ends the paths of drops at a pane, and removes the drops that are on the eye's side all the time.
+fn keep_outside(drops: &mut Vec<FallingDrop>, pane: &PanePlane, view: &View) {
+    drops.retain_mut(|drop| {
+        let kept = drop.beyond(pane.outward, pane.distance, view);
+        *drop = kept.unwrap_or(*drop);
+        kept.is_some()
+    });
 }
 
 /// Terminal speed, m/s, of drops of the effective diameter of a rain.

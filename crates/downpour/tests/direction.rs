@@ -138,3 +138,36 @@ fn a_rate_that_changes_needs_closed_form() {
     let error = Shower::new(&weather).unwrap_err().to_string();
     assert!(error.contains("rain.rate_mm_h has keys"), "{error}");
 }
+
+/// A drag without a closed form is refused with `volume = "closed-form"`, and taken step by step else.
+#[test]
+fn a_drag_without_a_closed_form_is_refused_in_closed_form() {
+    let shower = |volume: &str| {
+        let text = format!("[rain]\ndrag = 'rousseau-2008'\nvolume = '{volume}'");
+        Shower::new(&downpour::weather::Weather::parse("w.toml", &text).unwrap())
+    };
+    let error = shower("closed-form").unwrap_err();
+    assert!(matches!(error, downpour::shower::ShowerError::DragByStep), "{error}");
+    let told = error.to_string();
+    for part in ["rain.drag is \"rousseau-2008\"", "rain.volume is \"closed-form\"", "allowed: "] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+    for volume in ["auto", "view", "box"] {
+        assert!(!shower(volume).unwrap().is_closed_form(), "{volume}");
+    }
+}
+
+/// `rain.extinction = "total"` takes out twice what drops cover.
+#[test]
+fn the_total_extinction_is_twice_that_of_a_camera() {
+    let extinction = |extinction: &str| {
+        let text = format!("{}\n", shower("60")).replacen(
+            "[rain]",
+            &format!("[rain]\nextinction = '{extinction}'"),
+            1,
+        );
+        renderer(&text, 0.0).frame(0.0).unwrap().medium.extinction()
+    };
+    let (camera, total) = (extinction("camera"), extinction("total"));
+    assert!(camera > 1.0e-3 && (total / camera - 2.0).abs() < 1.0e-6, "{camera}, {total}");
+}

@@ -2,10 +2,13 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+#[cfg(feature = "wgpu")]
+mod device;
+
 use downpour::scene::Budget;
 use downpour::scene::sandbox::NoFiles;
 use downpour::weather::{Roots, Weather, load};
-use downpour::{Backend, Device, Frame, Renderer, RendererOptions};
+use downpour::{Device, Frame, Renderer, RendererOptions};
 
 /// Two lamps over a floor with a step.
 const WEATHER: &str = "
@@ -210,8 +213,8 @@ fn a_kept_plate_is_refined_on_a_cpu() {
 #[cfg(feature = "wgpu")]
 #[test]
 fn a_kept_plate_is_refined_on_a_gpu() {
-    use downpour::gpu::{AdapterChoice, Gpu};
-    a_kept_plate_is_refined(&Device::gpu(Gpu::open(&AdapterChoice::Auto).unwrap(), false));
+    let Some(gpu) = device::gpu(downpour::gpu::LimitSet::Adapter) else { return };
+    a_kept_plate_is_refined(&Device::gpu(gpu, false));
 }
 
 /// Pixels for a display are those of the frame of the time.
@@ -219,8 +222,10 @@ fn a_kept_plate_is_refined_on_a_gpu() {
 fn a_frame_for_a_display_is_the_frame() {
     let folder = folder();
     let glow = changed(&[("[camera]", "[glow]\nglare = 0.05\n[camera]")]);
-    for device in [Backend::Cpu.device(), Backend::Auto.device()] {
-        let device = device.unwrap();
+    let mut devices = vec![Device::cpu()];
+    #[cfg(feature = "wgpu")]
+    devices.extend(device::gpu(downpour::gpu::LimitSet::Adapter).map(|gpu| Device::gpu(gpu, false)));
+    for device in devices {
         let mut display = opened(&folder, &glow, &fast(), device.clone());
         let mut frames = opened(&folder, &glow, &fast(), device);
         for time_s in [0.5, 0.6] {

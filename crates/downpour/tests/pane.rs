@@ -1,9 +1,11 @@
 //! The pane of a weather on a GPU and on the CPU.
 #![cfg(feature = "wgpu")]
 
+mod device;
+
 use std::error::Error;
 
-use downpour::gpu::{AdapterChoice, Gpu};
+use downpour::gpu::LimitSet;
 use downpour::render::camera::Viewpoint;
 use downpour::render::glass::{PaneLattice, WetPane};
 use downpour::weather::Weather;
@@ -17,7 +19,7 @@ fn a_pane_on_a_gpu_is_that_of_the_cpu() -> Result<(), Box<dyn Error>> {
                 length_m = 0.08\nfrom_deg = 20\nto_deg = 160\nperiod_s = 1.3\n";
     let weather = Weather::parse("w.toml", text)?;
     let eye = Viewpoint { eye: Vec3::new(0.0, 1.5, 0.0), forward: Vec3::NEG_Z, up: Vec3::Y, fov_y: 0.87 };
-    let gpu = Gpu::open(&AdapterChoice::Auto)?;
+    let Some(gpu) = device::gpu(LimitSet::Adapter) else { return Ok(()) };
     let mut on_cpu = WetPane::new(&weather, &eye, 0.0)?.ok_or("no pane")?;
     let mut on_gpu = WetPane::on_gpu(&gpu, &weather, &eye, 0.0)?.ok_or("no pane")?;
     assert!(matches!(on_gpu.lattice(), PaneLattice::Gpu(_)));

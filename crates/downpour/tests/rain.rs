@@ -2,7 +2,9 @@
 
 #![cfg(feature = "wgpu")]
 
-use downpour::gpu::{AdapterChoice, Gpu, GpuOptions, LimitSet, wgpu};
+mod device;
+
+use downpour::gpu::{Gpu, LimitSet, wgpu};
 use downpour::math::packing::packing_unpack_half;
 use downpour::rain::{DepthRange, PlateTextures, Rain, RainError, RainSettings, RainView};
 use downpour::render::camera::{EyeMotion, Viewpoint};
@@ -14,12 +16,7 @@ const NEAR_M: f32 = 0.1;
 
 /// A device with WebGPU's default limits; `None` if tests on a GPU were declined.
 fn device() -> Option<Gpu> {
-    if std::env::var("DOWNPOUR_GPU_TESTS").is_ok_and(|value| value == "no") {
-        return None;
-    }
-    let options =
-        GpuOptions { adapter: AdapterChoice::Auto, limits: LimitSet::WebGpuDefault, ..GpuOptions::default() };
-    Some(Gpu::open_with(&options).expect("a GPU or its software driver"))
+    device::gpu(LimitSet::WebGpuDefault)
 }
 
 /// A frame of a host: a gray sky above, a wall some metres away below.

@@ -6,6 +6,9 @@ use std::path::PathBuf;
 
 use downpour::scene::Budget;
 use downpour::scene::SceneError;
+use downpour::shower::{MovingScenery, Shower};
+use downpour::sim::field::VisibleDrops;
+use downpour::trace::stage::FrameScene;
 use downpour::weather::{CameraPath, CameraPose};
 use downpour::wind::Keyed;
 use downpour::{Backend, Device, Renderer, RendererError, RendererOptions, Source};
@@ -210,21 +213,73 @@ fn stepped_rain_is_that_of_the_time_at_any_frame_rate() {
         .replace("[rain]", "[rain]\nvolume = \"view\"")
         .replace("60", "300")
         .replace("[48, 32]", "[96, 64]");
-    let drops = |times: &[f64]| {
+    is_that_of_the_time("calm air", |times| {
         let mut renderer = opened(&text);
-        let last = times.iter().map(|&time| renderer.frame(time).unwrap().drops).last().unwrap();
-        let mut drops = last.drops;
+        times.iter().map(|&time| renderer.frame(time).unwrap().drops).last().unwrap()
+    });
+}
+
+/// So it is in turbulence, over a floor from which droplets rebound, and before an eye that moves and turns.
+#[test]
+fn stepped_rain_of_a_scene_is_that_of_the_time() {
+    let text = OPEN
+        .replace("[rain]", "[rain]\nvolume = \"view\"")
+        .replace("60", "300")
+        .replace("[48, 32]", "[240, 160]");
+    let turbulence = format!("{text}[turbulence]\nspeed_m_s = 1.5\nlength_m = 1\n");
+    let keys = "position_m = [[0, [0, 1.6, 0]], [2, [4, 1.6, -6]]]\nyaw_deg = [[0, 0], [2, 120]]";
+    let moving = text.replace("position_m = [0, 1.6, 0]", keys);
+    let low = text.replace("position_m = [0, 1.6, 0]", "position_m = [0, 0.4, 0]\npitch_deg = -15");
+    let low = format!("{low}[[model]]\nfile = 'floor.gltf'\n");
+    for (name, text) in [("turbulence", turbulence), ("a moving eye", moving), ("a floor", low)] {
+        let (folder, path) = file(&text);
+        floor(&folder);
+        let source = Source::read(&path, &[], &mut Budget::default()).unwrap();
+        let scenery = MovingScenery { weather: &source.weather, loaded: &source.loaded };
+        is_that_of_the_time(name, |times| {
+            let mut shower = Shower::new(&source.weather).unwrap();
+            let mut at = |time_s: f64| {
+                let stage = FrameScene::new(&source.weather, &source.loaded, time_s).unwrap();
+                shower.at(&scenery, &stage, time_s, &mut |_, _| ()).unwrap()
+            };
+            times.iter().map(|&time| at(time)).last().unwrap()
+        });
+    }
+}
+
+/// A floor of 40 x 40 m at height 0 as a model beside a weather file.
+fn floor(folder: &tempfile::TempDir) {
+    let corners: [[f32; 3]; 4] =
+        [[-20.0, 0.0, -20.0], [-20.0, 0.0, 20.0], [20.0, 0.0, 20.0], [20.0, 0.0, -20.0]];
+    let indices: [u32; 6] = [0, 1, 2, 0, 2, 3];
+    let bytes: Vec<u8> = corners.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+    let all = [bytes, indices.iter().flat_map(|k| k.to_le_bytes()).collect()].concat();
+    std::fs::write(folder.path().join("floor.bin"), all).unwrap();
+    let model = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
+        "buffers":[{"uri":"floor.bin","byteLength":72}],
+        "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[-20,0,-20],"max":[20,0,20]},
+        {"bufferView":1,"componentType":5125,"count":6,"type":"SCALAR"}]}"#;
+    std::fs::write(folder.path().join("floor.gltf"), model).unwrap();
+}
+
+/// Checks the drops of the last of some times that a function finds.
+fn is_that_of_the_time(name: &str, found: impl Fn(&[f64]) -> VisibleDrops) {
+    let drops = |times: &[f64]| {
+        let VisibleDrops { mut drops, resolved, .. } = found(times);
         drops.sort_by_key(|drop| drop.id);
-        (last.resolved, drops)
+        (resolved, drops)
     };
     let alone = drops(&[0.5]);
-    assert!(alone.1.len() > 10, "{} drops", alone.1.len());
+    println!("{name}: {} drops", alone.1.len());
+    assert!(alone.1.len() > 10, "{name}: {} drops", alone.1.len());
     for rate in [8.0, 24.0, 50.0] {
         let clip: Vec<f64> = (0..=(0.5 * rate) as u32).map(|frame| f64::from(frame) / rate).collect();
-        assert!(drops(&clip) == alone, "{rate} frames a second");
+        assert!(drops(&clip) == alone, "{name}, {rate} frames a second");
     }
-    assert!(drops(&[0.9, 0.5]) == alone, "back");
-    assert!(drops(&[0.48]) != alone, "control");
+    assert!(drops(&[0.9, 0.5]) == alone, "{name}, back");
+    assert!(drops(&[0.48]) != alone, "{name}, control");
 }
 
 /// All frames have the exposure of the first, unless it is set.

@@ -237,15 +237,38 @@ fn field_carried(speed: f32) -> FieldCarried {
     return FieldCarried(drift, wind);
 }
 
-// True if the path of what is seen touches the picture, it is between the least distance and that up to which drops are searched for,
-// and beyond the pane if there is one.
+// Part of the exposure, s from its middle, in which a drop is beyond a pane, from its distances beyond it at the begin and the end, m;
+// the first time is above the last if it never is.
+fn field_outside(begin: f32, end: f32, half_time: f32) -> vec2f {
+    var part = vec2f(-FIELD_ALWAYS, FIELD_ALWAYS);
+    if begin < 0.0 && end < 0.0 {
+        return -part;
+    }
+    let crossing = half_time * ((begin + end) / max(abs(begin - end), 1.0e-30));
+    if begin < 0.0 {
+        part.x = -crossing;
+    }
+    if end < 0.0 {
+        part.y = crossing;
+    }
+    return part;
+}
+
+// Part of the exposure in which a drop is beyond the pane before the eye, if there is one.
+fn field_beyond(drop: EyeDrop) -> vec2f {
+    let half_time = field_frame.half_shutter;
+    let begin = eye_drop_position(drop, field_frame.velocity, field_frame.turning, -half_time);
+    let end = eye_drop_position(drop, field_frame.velocity, field_frame.turning, half_time);
+    let pane = field_frame.pane;
+    return field_outside(dot(pane.xyz, begin) - pane.w, dot(pane.xyz, end) - pane.w, half_time);
+}
+
+// True if the path of what is seen touches the picture, and it is between the least distance and that up to which drops are searched
+// for.
 fn field_shows(drop: EyeDrop, kind: FieldClass) -> bool {
     let distance = sqrt(dot(drop.offset, drop.offset));
     let range = min(drop.diameter * field_frame.per_diameter + field_frame.beyond, kind.farthest);
     if distance < field_frame.nearest || distance > range {
-        return false;
-    }
-    if dot(field_frame.pane.xyz, drop.offset) < field_frame.pane.w {
         return false;
     }
     let half_time = field_frame.half_shutter;
@@ -292,7 +315,7 @@ fn field_chain(kind: FieldClass, column: vec2i, key: vec2u, index: u32) {
         let place = rng_draw(key, index, number, FIELD_PLACE);
         let in_column = (vec2f(place.xy >> vec2u(8u)) + 0.5) * (FIELD_FRACTION_STEP * 256.0);
         let aside = (vec2f(column - kind.eye_column) + (in_column - kind.eye_in_column)) * kind.edge;
-        let drop = EyeDrop(
+        var drop = EyeDrop(
             vec3f(aside.x, (f32(k) + part) * kind.period, aside.y) + carried.drift,
             f32(size.x) * FIELD_DIAMETER_STEP,
             carried.wind - vec3f(0.0, speed, 0.0),
@@ -302,7 +325,8 @@ fn field_chain(kind: FieldClass, column: vec2i, key: vec2u, index: u32) {
             place.w,
         );
         atomicAdd(&field_found[1], 1u);
-        if field_shows(drop, kind) {
+        drop.present = field_beyond(drop);
+        if drop.present.x <= drop.present.y && field_shows(drop, kind) {
             let slot = atomicAdd(&field_found[0], 1u);
             if slot < field_frame.room {
                 field_drops[field_frame.first + slot] = drop;

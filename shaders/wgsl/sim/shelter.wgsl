@@ -98,7 +98,11 @@ fn main_shelter(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
     if half_time > 0.0 {
         let met = shelter_hit(start, drop.velocity, 0.0, 2.0 * half_time);
         if met >= 0.0 {
-            shelter_drops[index].present.y = met - half_time;
+            let until = min(drop.present.y, met - half_time);
+            shelter_drops[index].present.y = until;
+            if drop.present.x > until {
+                shelter_drops[index].diameter = 0.0;
+            }
         }
     }
 }

@@ -16,7 +16,7 @@ use downpour_shaders::sim::field::{
 use downpour_shaders::sim::splash::{SPLASH, SPLASH_KERNEL};
 use downpour_sim::field::chain::{FieldTime, field_between, field_fallen, field_fraction, field_part};
 use downpour_sim::field::thinning::{field_interval, field_is_below, field_less};
-use downpour_sim::field::{EyeDrop, FallingDrop, RainField, drift_position, eye_drop_turned};
+use downpour_sim::field::{EyeDrop, FallingDrop, RainField, drift_position, eye_drop_turned, field_outside};
 use downpour_sim::gpu::{FieldPipeline, FieldSearch, GpuSimError, HolesOnGpu, ObstaclesOnGpu};
 use downpour_sim::impacts::SplashOptions;
 use downpour_sim::impacts::splash_frame::{splash_middle, splash_parameter};
@@ -77,6 +77,19 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             |a| {
                 let (lower, fraction) = drift_position(a.f32().into());
                 [lower as f32, fraction as f32].words()
+            },
+        ),
+        FunctionCase::new(
+            "field_outside",
+            &FIELD,
+            &[Uniform(-1.0, 1.0), Uniform(-1.0, 1.0), Uniform(0.0, 0.05)],
+            Tol::absolute(
+                1.0e-6,
+                "a quotient of at most 1, of which a GPU has 2.5 units in the last place, times 0.05 s",
+            ),
+            |a| {
+                let [begin, end, half_time] = a.f32s();
+                field_outside(begin, end, half_time).words()
             },
         ),
         FunctionCase::new("field_part", &FIELD, &[AnyWord, Below(1 << 16)], exact, |a| {
