@@ -6,6 +6,7 @@ use downpour_math::rng::{rng_pcg4d, rng_unit};
 use downpour_render::camera::Viewpoint;
 use downpour_render::light::LightSource;
 use downpour_render::picture::noise_seed;
+use downpour_render::tone::tone_picture;
 use downpour_shaders::render::scene::SCENE_UNLIT;
 use downpour_trace::builder::{MeshPart, SceneBuilder};
 use downpour_trace::data::{RenderFrame, SceneData};
@@ -13,6 +14,7 @@ use downpour_trace::material::MaterialLook;
 use downpour_trace::puddle::{Ground, PuddleLook, PuddleMap, PuddleRows, slope_levels};
 use downpour_trace::scene::SceneView;
 use downpour_trace::sky_light::SkyLight;
+use downpour_weather::ToneCurve;
 use glam::{Affine3A, DVec3, Vec2, Vec3};
 
 type Outcome = Result<(), Box<dyn std::error::Error>>;
@@ -323,23 +325,153 @@ fn noise_of_water_has_no_pattern_and_changes_with_time() -> Outcome {
         )?;
         Ok(found.iter().map(|pixel| f64::from(pixel[1])).collect())
     };
-    let pictures = (0..10).map(of_time).collect::<Result<Vec<_>, _>>()?;
-    let truth: Vec<f64> =
-        (0..width * height).map(|i| pictures[2..].iter().map(|p| p[i]).sum::<f64>() / 8.0).collect();
-    let noise = |k: usize, x: usize, y: usize| pictures[k][y * width + x] - truth[y * width + x];
+    let pictures = (0..12).map(of_time).collect::<Result<Vec<_>, _>>()?;
+    // Each of both frames less the mean of five others that the other frame is not compared with.
+    let noise_of = |k: usize| -> Vec<f64> {
+        let others = &pictures[2 + 5 * k..7 + 5 * k];
+        (0..width * height).map(|i| pictures[k][i] - others.iter().map(|p| p[i]).sum::<f64>() / 5.0).collect()
+    };
+    let noises = [noise_of(0), noise_of(1)];
     let pixels = || (0..height - 8).flat_map(|y| (0..width - 8).map(move |x| (x, y)));
-    // The mean of eight has an eighth of the noise, which both share.
-    let in_time = correlation(pixels().map(|(x, y)| (noise(0, x, y), noise(1, x, y))));
-    assert!(in_time.abs() < 0.35, "frames share noise: {in_time}");
-    let lag =
-        |dx: usize, dy: usize| correlation(pixels().map(|(x, y)| (noise(0, x, y), noise(0, x + dx, y + dy))));
-    for (name, lags) in
-        [("across", [lag(6, 0), lag(7, 0), lag(8, 0)]), ("down", [lag(0, 6), lag(0, 7), lag(0, 8)])]
-    {
-        let more = lags[1] - 0.5 * (lags[0] + lags[2]);
-        assert!(more < 0.1, "{name}: {lags:?}");
-    }
+    let in_time = correlation(pixels().map(|(x, y)| (noises[0][y * width + x], noises[1][y * width + x])));
+    println!("between frames: {in_time:.3}");
+    assert!(in_time.abs() < 0.06, "frames share noise: {in_time}");
+    // By how much noise is more alike 7 pixels away than 6 and 8 pixels away: a pattern of the filter's size.
+    let pattern = |noise: &dyn Fn(usize, usize) -> f64| {
+        let lag =
+            |dx: usize, dy: usize| correlation(pixels().map(|(x, y)| (noise(x, y), noise(x + dx, y + dy))));
+        [[lag(6, 0), lag(7, 0), lag(8, 0)], [lag(0, 6), lag(0, 7), lag(0, 8)]]
+            .map(|[before, at, after]| at - 0.5 * (before + after))
+    };
+    let found = pattern(&|x, y| noises[0][y * width + x]);
+    let repeated = pattern(&|x, y| noises[0][y % 7 * width + x % 7]);
+    println!("across and down: {found:.3?}, of a noise that repeats {repeated:.3?}");
+    assert!(found.iter().all(|more| more.abs() < 0.06), "{found:?}");
+    assert!(repeated.iter().all(|more| *more > 0.2), "control: {repeated:?}");
     assert_eq!(noise_seed(9, 0.5), noise_seed(9, 0.5));
     assert_ne!(noise_seed(9, 0.5), noise_seed(8, 0.5));
+    Ok(())
+}
+
+/// A metal ball under a sky of two tones shows each where its mirror direction is in it.
+#[test]
+fn a_metal_ball_mirrors_a_sky_of_two_tones() -> Outcome {
+    let (width, height) = (256u32, 128u32);
+    let tones = [1.5f32, 0.3];
+    let tone = |direction: DVec3| tones[usize::from(direction.x + 0.4 * direction.y < 0.0)];
+    let sky: Vec<[f32; 3]> = (0..width * height).map(|i| [tone(texel(i, width, height).0); 3]).collect();
+    let mut builder = SceneBuilder::new();
+    let metal =
+        MaterialLook { base_color: [1.0; 4], metallic: 1.0, roughness: 0.0, ..MaterialLook::default() };
+    let metal = builder.add_material(metal);
+    let (columns, rows) = (192u32, 96u32);
+    let corner = |i: u32, j: u32| {
+        let around = std::f64::consts::TAU * f64::from(i) / f64::from(columns);
+        let polar = std::f64::consts::PI * f64::from(j) / f64::from(rows);
+        let flat = exact::sin(polar);
+        DVec3::new(flat * exact::cos(around), exact::cos(polar), flat * exact::sin(around))
+            .as_vec3()
+            .to_array()
+    };
+    let positions: Vec<[f32; 3]> =
+        (0..=rows).flat_map(|j| (0..=columns).map(move |i| corner(i, j))).collect();
+    let at = |i: u32, j: u32| j * (columns + 1) + i;
+    let indices: Vec<u32> = (0..rows)
+        .flat_map(|j| (0..columns).map(move |i| (i, j)))
+        .flat_map(|(i, j)| {
+            [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j), at(i + 1, j + 1), at(i, j + 1)]
+        })
+        .collect();
+    builder.add_mesh(&MeshPart::plain(&positions, &indices, metal), &Affine3A::IDENTITY);
+    let scene = builder.build(&SkyLight::new(width, height, &sky));
+    let (eye, size) = (Vec3::new(0.5, 0.8, 4.0), [64, 64]);
+    let view = Viewpoint { eye, forward: -eye, up: Vec3::Y, fov_y: 0.4 };
+    let frame = RenderFrame::new(&scene, &view, size, 1, 1, 5)?;
+    let view = SceneView { data: &scene, frame: &frame };
+    let (mut counts, mut sums) = ([0; 2], [0.0; 2]);
+    for (i, pixel) in view.picture().iter().enumerate() {
+        let along =
+            view.frame.camera.camera_direction((i % 64) as f32 + 0.5, (i / 64) as f32 + 0.5).as_dvec3();
+        let (eye, along) = (eye.as_dvec3(), along.normalize());
+        // Where the ray meets the ball of radius 1.
+        let middle = -eye.dot(along);
+        let inside = middle * middle - eye.length_squared() + 1.0;
+        if inside < 0.2 {
+            continue;
+        }
+        let normal = eye + along * (middle - inside.sqrt());
+        let mirrored = along - normal * (2.0 * along.dot(normal));
+        // The facets turn the mirror direction by up to 2 degrees.
+        if (mirrored.x + 0.4 * mirrored.y).abs() < 0.12 {
+            continue;
+        }
+        let expected = tone(mirrored);
+        let which = usize::from(expected < 1.0);
+        (counts[which], sums[which]) = (counts[which] + 1, sums[which] + f64::from(pixel[1] / expected));
+        assert!((pixel[1] / expected - 1.0).abs() < 0.04, "{i}, {mirrored}: {pixel:?}, {expected}");
+    }
+    println!("{counts:?} pixels of both tones, {sums:?} times as bright in sum");
+    assert!(counts.iter().all(|count| *count > 300), "{counts:?}");
+    Ok(())
+}
+
+/// Form factor from a place on the floor to an upright rectangle that stands on it `c` away: from the place's foot to `b` aside
+/// and `a` high (J. Howell, "A catalog of radiation heat transfer configuration factors", B-4).
+fn form_factor(a: f64, b: f64, c: f64) -> f64 {
+    let slant = (a * a + c * c).sqrt();
+    (exact::atan2(b, c) - c / slant * exact::atan2(b, slant)) / std::f64::consts::TAU
+}
+
+/// The floor of a shed with black walls has the light of the sky that comes in through the door, at every distance.
+#[test]
+fn a_shed_is_lit_through_its_door() -> Outcome {
+    let mut builder = SceneBuilder::new();
+    let (black, floor) = (builder.add_material(diffuse(0.0)), builder.add_material(diffuse(0.5)));
+    // 4 m wide and 6 m deep, 3 m high; the door in the wall at z = 3 is 1 m wide and 2 m high.
+    square(&mut builder, floor, Vec3::ZERO, Vec3::Z * 3.0, Vec3::X * 2.0);
+    square(&mut builder, black, Vec3::Y * 3.0, Vec3::X * 2.0, Vec3::Z * 3.0);
+    square(&mut builder, black, Vec3::new(0.0, 1.5, -3.0), Vec3::X * 2.0, Vec3::Y * 1.5);
+    for side in [-1.0, 1.0] {
+        square(&mut builder, black, Vec3::new(2.0 * side, 1.5, 0.0), Vec3::Z * 3.0, Vec3::Y * 1.5);
+        square(&mut builder, black, Vec3::new(1.25 * side, 1.5, 3.0), Vec3::X * 0.75, Vec3::Y * 1.5);
+    }
+    square(&mut builder, black, Vec3::new(0.0, 2.5, 3.0), Vec3::X * 0.5, Vec3::Y * 0.5);
+    let scene = builder.build(&SkyLight::uniform([2.0; 3]));
+    for z in [2.0f32, 1.0, -1.0] {
+        let at = Vec3::new(0.0, 0.0, z);
+        // The median over noises: 49 directions that all windows of a picture share meet the door more or less often.
+        let of_seed = |seed| Ok(mean(&picture(&scene, at + Vec3::Y * 2.0, at, 0.08, [96, 96], seed)?));
+        let mut means = (0..41).map(of_seed).collect::<Result<Vec<f64>, Box<dyn std::error::Error>>>()?;
+        means.sort_by(f64::total_cmp);
+        let found = means[20];
+        let expected = 0.5 * 2.0 * 2.0 * form_factor(2.0, 0.5, 3.0 - f64::from(z));
+        println!("{} m from the door: {found:.4} of {expected:.4}", 3.0 - z);
+        assert!((found / expected - 1.0).abs() < 0.04, "{z}: {found}, not {expected}");
+    }
+    Ok(())
+}
+
+/// The mirror image of a red lamp in a puddle keeps its hue in a picture to look at, and is no white spot, up to three stops over.
+#[test]
+fn a_red_lamps_mirror_image_stays_red() -> Outcome {
+    let lamp = LightSource::Point {
+        position: Vec3::new(0.0, 0.8, -1.0),
+        radius: 0.1,
+        intensity: Vec3::new(4.0, 0.25, 0.12),
+        range: 0.0,
+    };
+    let scene = puddle(diffuse(0.02), 0.03, 0.001, lamp);
+    let pixels = picture(&scene, Vec3::new(0.0, 0.8, 1.6), Vec3::new(0.0, 0.0, 0.2), 0.5, [96, 96], 3)?;
+    let brightest = pixels.iter().max_by(|a, b| a[0].total_cmp(&b[0])).ok_or("no pixel")?;
+    let [r, g, b, _] = *brightest;
+    assert!(r > 5.0 * g && g > b, "the image is red: {brightest:?}");
+    for stops in 0..4 {
+        let exposure = 2f32.powi(stops) / r;
+        let shown = tone_picture(&[[r, g, b]], exposure, ToneCurve::Hue)[0].map(f64::from);
+        println!("{stops} stops over: {shown:?}");
+        let [red, green, blue] = shown;
+        // Red with little orange, as the light is.
+        assert!(red > 200.0 && green < 0.8 * red && green >= blue, "{stops} stops over: {shown:?}");
+    }
     Ok(())
 }
