@@ -23,7 +23,10 @@ fn weather(volume: &str, temperature_c: f64, pressure_hpa: f64) -> Result<Weathe
 }
 
 /// Speeds of drops of some diameters, mm, by K. Beard 1976, in m/s: computed apart from this project.
-const SPEEDS: [(f64, f64, [(f64, f64); 3]); 2] = [
+type Speeds = (f64, f64, [(f64, f64); 3]);
+
+/// Temperature in Celsius and pressure in hPa, with them.
+const SPEEDS: [Speeds; 2] = [
     (20.0, 1013.25, [(1.0, 4.005), (2.0, 6.506), (4.0, 8.811)]),
     (10.0, 700.0, [(1.0, 4.567), (2.0, 7.497), (4.0, 10.353)]),
 ];

@@ -9,7 +9,7 @@ use downpour::gpu::{AdapterChoice, Gpu, GpuOptions, LimitSet};
 ///
 /// # Panics
 /// Panics without an adapter, and says what to do.
-pub fn gpu(limits: LimitSet) -> Option<Gpu> {
+pub(crate) fn gpu(limits: LimitSet) -> Option<Gpu> {
     if std::env::var("DOWNPOUR_GPU_TESTS").is_ok_and(|value| value == "no") {
         return None;
     }
