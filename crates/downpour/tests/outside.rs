@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use downpour::math::ops::f64 as exact;
+use downpour::math::ops::f64 as ops;
 use downpour::scene::Budget;
 use downpour::scene::sandbox::NoFiles;
 use downpour::shower::{MovingScenery, Shower};
@@ -45,7 +45,7 @@ fn drops(text: &str, time_s: f64) -> Result<Vec<FallingDrop>, Box<dyn Error>> {
 fn beyond(drop: &FallingDrop, speed_m_s: f64, time_s: f64) -> [f64; 2] {
     let tilt = TILT_DEG.to_radians();
     // Away from the eye and up; a vertical pane has a tilt of 90 degrees.
-    let outward = DVec3::new(0.0, exact::cos(tilt), -exact::sin(tilt));
+    let outward = DVec3::new(0.0, ops::cos(tilt), -ops::sin(tilt));
     let through = DVec3::new(0.0, 0.0, -PANE_M);
     let motion = DVec3::new(0.0, 0.0, -speed_m_s);
     let velocity = DVec3::from(drop.velocity.map(f64::from));

@@ -225,8 +225,10 @@ fn stepped_rain_of_a_scene_is_that_of_the_time() {
     let text = OPEN
         .replace("[rain]", "[rain]\nvolume = \"view\"")
         .replace("60", "300")
-        .replace("[48, 32]", "[240, 160]");
-    let turbulence = format!("{text}[turbulence]\nspeed_m_s = 1.5\nlength_m = 1\n");
+        .replace("[48, 32]", "[144, 96]");
+    let turbulence = format!(
+        "{text}[turbulence]\nspeed_m_s = 1.5\nlength_m = 2\n[wind_field]\nsize = [20, 20, 20]\nbox_m = [20, 20, 20]\n"
+    );
     let keys = "position_m = [[0, [0, 1.6, 0]], [2, [4, 1.6, -6]]]\nyaw_deg = [[0, 0], [2, 120]]";
     let moving = text.replace("position_m = [0, 1.6, 0]", keys);
     let low = text.replace("position_m = [0, 1.6, 0]", "position_m = [0, 0.4, 0]\npitch_deg = -15");

@@ -80,6 +80,10 @@ fn a_device_finds_the_drops_of_the_cpu() -> Result<(), Box<dyn Error>> {
             assert!(drop.kind == other.kind && differ <= ulps, "{file}: {drop:?} {other:?}");
             let part = |drop: &FallingDrop| drop.present_s.map(f32::is_finite);
             assert_eq!(part(drop), part(other), "{file}: drop {id}");
+            let times = drop.present_s.iter().zip(&other.present_s).filter(|(time, _)| time.is_finite());
+            for (time, of_device) in times {
+                assert!((time - of_device).abs() < 1.0e-3, "{file}: {drop:?} {other:?}");
+            }
         }
         // The drops that are drawn, by their places in the list, nearest first.
         let count = on_gpu.drops.drops.len();

@@ -273,10 +273,12 @@ fn found(gpu: &Gpu, kind: Kind) -> Result<Found, GpuError> {
     let Setting { field, view, scene, origin } = setting(kind);
     let holes = kind.has_holes.then_some(&scene as &dyn Holes);
     let on_cpu = Obstacles { nodes: &scene.nodes, triangles: &scene.triangles, holes, origin };
-    let [x, y, z, distance] = kind.pane.unwrap_or_default();
-    let is_outside = |drop: &EyeDrop| Vec3::new(x, y, z).dot(drop.offset.into()) >= distance;
+    let outside = |drop: &FallingDrop| match kind.pane {
+        Some([x, y, z, distance]) => drop.beyond(Vec3::new(x, y, z), distance, &view),
+        None => Some(*drop),
+    };
     let listed = |drops: Vec<FallingDrop>| -> Vec<EyeDrop> {
-        drops.iter().map(|drop| EyeDrop::new(drop, view.eye)).filter(is_outside).collect()
+        drops.iter().filter_map(outside).map(|drop| EyeDrop::new(&drop, view.eye)).collect()
     };
     let all = listed(field.visible(&view, kind.time_s).expect("in range").drops);
     let open = listed(field.visible_among(&on_cpu, &view, kind.time_s).expect("in range").drops);

@@ -48,14 +48,6 @@ pub struct PanePlane {
     pub distance: f32,
 }
 
-impl PanePlane {
-    /// True if a position, relative to the eye, is on the eye's side.
-    #[must_use]
-    pub fn is_before(&self, offset: Vec3) -> bool {
-        offset.dot(self.outward) < self.distance
-    }
-}
-
 /// Options of unresolved rain besides its drop sizes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MediumOptions {
