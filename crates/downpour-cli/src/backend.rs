@@ -103,10 +103,6 @@ mod gpu {
     /// Variable for tests of failing GPUs: `lost@K` destroys the device after K submissions, `hang` waits forever.
     const INJECT: &str = "DOWNPOUR_INJECT";
 
-    /// Timeout of one submission to a software driver: it has the speed of a CPU, and its compiler alone may need half a
-    /// minute. It does not hang as a device does, and signals end it.
-    const SOFTWARE_TIMEOUT: Duration = Duration::from_secs(600);
-
     /// An error that may come from a GPU.
     pub(crate) trait FromGpu: std::fmt::Display {
         /// Error of the GPU, if it comes from there.
@@ -216,7 +212,7 @@ mod gpu {
         let options = inject(GpuOptions { adapter, ..GpuOptions::default() })?;
         match Gpu::open_with(&options) {
             Ok(gpu) if gpu.adapter().is_software() && options.timeout == GpuOptions::default().timeout => {
-                Ok(Ok(gpu.with_timeout(SOFTWARE_TIMEOUT)))
+                Ok(Ok(gpu.with_timeout(downpour::Device::SOFTWARE_TIMEOUT)))
             }
             Ok(gpu) => Ok(Ok(gpu)),
             Err(error @ (GpuError::NoAdapter { .. } | GpuError::NoDevice { .. })) => Ok(Err(error)),

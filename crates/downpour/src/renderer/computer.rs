@@ -46,7 +46,11 @@ impl Backend {
             Self::Auto | Self::Gpu => {
                 use downpour_gpu::{AdapterChoice, Gpu, GpuError};
                 match Gpu::open(&AdapterChoice::Auto) {
-                    Ok(gpu) => Ok(Device::gpu(gpu, self == Self::Auto)),
+                    Ok(gpu) => {
+                        let is_software = gpu.adapter().is_software();
+                        let gpu = if is_software { gpu.with_timeout(Device::SOFTWARE_TIMEOUT) } else { gpu };
+                        Ok(Device::gpu(gpu, self == Self::Auto))
+                    }
                     Err(GpuError::NoAdapter { .. } | GpuError::NoDevice { .. }) if self == Self::Auto => {
                         Ok(Device::cpu())
                     }
@@ -67,6 +71,11 @@ pub struct Device {
 }
 
 impl Device {
+    /// Timeout of one submission to a software driver: it has the speed of a CPU, and its compiler alone may need half a
+    /// minute. It does not hang as a device does.
+    #[cfg(feature = "wgpu")]
+    pub const SOFTWARE_TIMEOUT: std::time::Duration = std::time::Duration::from_secs(600);
+
     /// The CPU.
     #[must_use]
     pub fn cpu() -> Self {
