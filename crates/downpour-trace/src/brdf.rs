@@ -105,7 +105,8 @@ pub fn brdf_environment(normal_reflectance: Vec3, roughness: f32, cosine_view: f
     let lift = (r[0] * r[0]).min(ops::exp2(-9.28 * cosine_view)) * r[0] + r[1];
     let scale = -1.04 * lift + r[2];
     let bias = 1.04 * lift + r[3];
-    normal_reflectance * scale + Vec3::splat(bias)
+    // The fit goes below 0 where almost nothing is reflected.
+    (normal_reflectance * scale + Vec3::splat(bias)).max(Vec3::ZERO)
 }
 
 #[cfg(test)]

@@ -129,8 +129,14 @@ fn faces_have_the_light_of_the_sky_before_them() -> Outcome {
         let across = normal.any_orthonormal_vector();
         square(&mut builder, face, Vec3::ZERO, across * 4.0, normal.cross(across) * 4.0);
         let scene = builder.build(&light);
-        let found = mean(&picture(&scene, normal * 2.0 + across * 0.3, Vec3::ZERO, 0.8, [32, 32], 3)?);
-        assert!((found / expected - 1.0).abs() < 0.05, "{normal}: {found}, {expected}");
+        // All windows of a picture share 49 directions, of which few meet the sun: the mean over noises.
+        let mut found = 0.0;
+        for seed in 0..16 {
+            found +=
+                mean(&picture(&scene, normal * 2.0 + across * 0.3, Vec3::ZERO, 0.8, [32, 32], seed)?) / 16.0;
+        }
+        println!("{normal}: {found:.4} of {expected:.4}");
+        assert!((found / expected - 1.0).abs() < 0.03, "{normal}: {found}, {expected}");
     }
     Ok(())
 }
@@ -439,11 +445,10 @@ fn a_shed_is_lit_through_its_door() -> Outcome {
     let scene = builder.build(&SkyLight::uniform([2.0; 3]));
     for z in [2.0f32, 1.0, -1.0] {
         let at = Vec3::new(0.0, 0.0, z);
-        // The median over noises: 49 directions that all windows of a picture share meet the door more or less often.
+        // The mean over noises: 49 directions that all windows of a picture share meet the door more or less often.
         let of_seed = |seed| Ok(mean(&picture(&scene, at + Vec3::Y * 2.0, at, 0.08, [96, 96], seed)?));
-        let mut means = (0..41).map(of_seed).collect::<Result<Vec<f64>, Box<dyn std::error::Error>>>()?;
-        means.sort_by(f64::total_cmp);
-        let found = means[20];
+        let means = (0..41).map(of_seed).collect::<Result<Vec<f64>, Box<dyn std::error::Error>>>()?;
+        let found = means.iter().sum::<f64>() / means.len() as f64;
         let expected = 0.5 * 2.0 * 2.0 * form_factor(2.0, 0.5, 3.0 - f64::from(z));
         println!("{} m from the door: {found:.4} of {expected:.4}", 3.0 - z);
         assert!((found / expected - 1.0).abs() < 0.04, "{z}: {found}, not {expected}");
@@ -472,6 +477,31 @@ fn a_red_lamps_mirror_image_stays_red() -> Outcome {
         let [red, green, blue] = shown;
         // Red with little orange, as the light is.
         assert!(red > 200.0 && green < 0.8 * red && green >= blue, "{stops} stops over: {shown:?}");
+    }
+    Ok(())
+}
+
+/// A floor under an even sky shows what it reflects of it, whatever its index, its roughness and the noise: no ray counts more than
+/// the lobe can give.
+#[test]
+fn a_floor_under_an_even_sky_is_even_with_any_noise() -> Outcome {
+    for (ior, roughness) in [(1.0f32, 1.0f32), (1.0, 0.6), (1.05, 1.0), (1.2, 0.9)] {
+        let mut builder = SceneBuilder::new();
+        let floor = builder.add_material(MaterialLook { ior, roughness, ..diffuse(0.5) });
+        square(&mut builder, floor, Vec3::ZERO, Vec3::Z * 3.0, Vec3::X * 2.0);
+        let scene = builder.build(&SkyLight::uniform([2.0; 3]));
+        for seed in 0..40 {
+            let pixels =
+                picture(&scene, Vec3::new(0.0, 2.0, 0.5), Vec3::new(0.0, 0.0, 0.5), 0.08, [96, 96], seed)?;
+            let brightest = pixels.iter().map(|pixel| pixel[1]).fold(0.0, f32::max);
+            let found = mean(&pixels);
+            // Half of 2, and no more than a few thousandths of gloss.
+            assert!((found - 1.0).abs() < 0.01, "index {ior}, roughness {roughness}, seed {seed}: {found}");
+            assert!(
+                brightest < 1.1,
+                "index {ior}, roughness {roughness}, seed {seed}: a spot of {brightest}"
+            );
+        }
     }
     Ok(())
 }

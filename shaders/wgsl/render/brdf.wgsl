@@ -89,5 +89,6 @@ fn brdf_environment(normal_reflectance: vec3f, roughness: f32, cosine_view: f32)
     let lift = min(r.x * r.x, exp2(-9.28 * cosine_view)) * r.x + r.y;
     let scale = -1.04 * lift + r.z;
     let bias = 1.04 * lift + r.w;
-    return normal_reflectance * scale + vec3f(bias);
+    // The fit goes below 0 where almost nothing is reflected.
+    return max(normal_reflectance * scale + vec3f(bias), vec3f(0.0));
 }
