@@ -49,9 +49,10 @@ fn floor_at(
     eye: f32,
     size: u32,
     grid: u32,
+    seed: u64,
 ) -> Result<Vec<f64>, Box<dyn std::error::Error>> {
     let view = Viewpoint { eye: Vec3::new(x, eye, 0.0), forward: Vec3::NEG_Y, up: Vec3::Z, fov_y: 0.1 };
-    let frame = RenderFrame::new(scene, &view, [size, size], grid, 1, 7)?;
+    let frame = RenderFrame::new(scene, &view, [size, size], grid, 1, seed)?;
     let picture = SceneView { data: scene, frame: &frame }.picture();
     Ok(picture.iter().map(|pixel| f64::from(pixel[1])).collect())
 }
@@ -87,7 +88,7 @@ fn a_surface_that_shines_lights_as_its_solid_angle() -> Outcome {
         let corners = [(-1.0, 0.5), (1.0, 0.5), (1.0, 1.5), (-1.0, 1.5)].map(|(z, y)| DVec3::new(-1.0, y, z));
         for x in [-0.5f32, 1.0, 5.0] {
             let expected = 0.5 * 30.0 * lambert(DVec3::new(f64::from(x), 0.0, 0.0), DVec3::Y, &corners);
-            let found = mean(&floor_at(&scene, x, 0.4, 48, 2)?);
+            let found = mean(&floor_at(&scene, x, 0.4, 48, 2, 7)?);
             assert!((found / expected - 1.0).abs() < 0.03, "{cuts} cuts, {x} m: {found}, {expected}");
         }
     }
@@ -108,8 +109,13 @@ fn in_a_room_that_shines_a_thing_shows_its_albedo() -> Outcome {
     }
     rectangle(&mut builder, table, Vec3::ZERO, [Vec3::Z * 0.5, Vec3::X * 0.5], 1);
     let scene = builder.build(&SkyLight::uniform([9.0; 3]));
-    let found = mean(&floor_at(&scene, 0.0, 2.0, 72, 1)?);
-    assert!((found / 0.6 - 1.0).abs() < 0.02, "{found}");
+    // The mean over noises, which all windows of a picture share.
+    let mut found = 0.0;
+    for seed in 0..16 {
+        found += mean(&floor_at(&scene, 0.0, 2.0, 72, 1, seed)?) / 16.0;
+    }
+    println!("{found:.4} of 0.6");
+    assert!((found / 0.6 - 1.0).abs() < 0.01, "{found}");
     Ok(())
 }
 
@@ -143,7 +149,7 @@ fn globe(lamp: bool, glass: bool, radius: f32) -> SceneData {
 /// one.
 #[test]
 fn a_lamp_and_its_glass_are_one_light() -> Outcome {
-    let of = |scene: &SceneData| floor_at(scene, 1.0, 1.0, 16, 1).map(|values| mean(&values));
+    let of = |scene: &SceneData| floor_at(scene, 1.0, 1.0, 16, 1, 7).map(|values| mean(&values));
     let bare = of(&globe(true, false, 0.0))?;
     let both = of(&globe(true, true, 0.0))?;
     assert!((both / bare - 1.0).abs() < 0.02, "{both}, {bare}");
@@ -295,7 +301,7 @@ fn many_surfaces_that_shine() -> Outcome {
         rectangle(&mut builder, floor, Vec3::ZERO, [Vec3::Z * 20.0, Vec3::X * 20.0], 1);
         rectangle(&mut builder, ceiling, Vec3::Y * 3.0, [Vec3::X * 4.0, Vec3::Z * 4.0], cuts);
         let scene = builder.build(&SkyLight::uniform([0.0; 3]));
-        Ok(mean(&floor_at(&scene, 0.0, 2.0, 24, 2)?))
+        Ok(mean(&floor_at(&scene, 0.0, 2.0, 24, 2, 7)?))
     };
     let (one, many) = (of(1)?, of(224)?);
     assert!((many / one - 1.0).abs() < 0.04, "{one}, {many}");

@@ -131,9 +131,9 @@ fn faces_have_the_light_of_the_sky_before_them() -> Outcome {
         let scene = builder.build(&light);
         // All windows of a picture share 49 directions, of which few meet the sun: the mean over noises.
         let mut found = 0.0;
-        for seed in 0..16 {
+        for seed in 0..64 {
             found +=
-                mean(&picture(&scene, normal * 2.0 + across * 0.3, Vec3::ZERO, 0.8, [32, 32], seed)?) / 16.0;
+                mean(&picture(&scene, normal * 2.0 + across * 0.3, Vec3::ZERO, 0.8, [32, 32], seed)?) / 64.0;
         }
         println!("{normal}: {found:.4} of {expected:.4}");
         assert!((found / expected - 1.0).abs() < 0.03, "{normal}: {found}, {expected}");
