@@ -65,9 +65,9 @@ impl FallingDrop {
         if end < 0.0 { end } else { begin.max(0.0) }
     }
 
-    /// The drop in the part of an exposure of `shutter_s` in which it is beyond a pane that moves with the camera;
-    /// `None` if it is not. `outward` and `distance` are the pane's unit normal, away from the eye, and its distance
-    /// from the eye, m. A splash counts by its position at the picture's time.
+    /// The drop in the part of a view's exposure in which it is beyond a pane that moves with the camera; `None` if it
+    /// never is. `outward` and `distance` are the pane's unit normal, away from the eye, and its distance from the eye,
+    /// m. A splash counts by its position at the picture's time.
     #[must_use]
     pub fn beyond(&self, outward: Vec3, distance: f32, view: &View) -> Option<Self> {
         let half_time = if self.kind == DropKind::Splash { 0.0 } else { (0.5 * view.shutter_s) as f32 };

@@ -1,6 +1,8 @@
 //! Rain in a view has the density of the rain, in each part of the picture and for each size, for any motion of camera
 //! and shutter. Expectations are integrals of the size distribution.
 
+mod setting;
+
 use downpour_drop::air::Air;
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_drop::fall_speed::{FallSpeedModel, terminal_speed};
@@ -8,25 +10,15 @@ use downpour_math::ops::f64 as ops;
 use downpour_sim::simulation::{Simulation, SimulationOptions, StepInput};
 use downpour_sim::step::StepDrop;
 use downpour_sim::view::View;
-use downpour_wind::{
-    Gusts, Keyed, UniformWind, Wind, WindCore, WindField, WindForm, WindGrid, WindMask, WindPart,
-    WindPrimitive, WindSingularity, WindTornado, WindUniform,
-};
+use downpour_wind::{Gusts, Keyed, UniformWind, Wind, WindField, WindPart, WindPrimitive, WindTornado};
 use glam::{DVec3, Vec3};
+use setting::{field, looking, vortex};
 
 /// Number of parts of the picture along each of its sides, and along the distance.
 const PARTS: usize = 5;
 
 fn rain() -> DropSizeDistribution {
     DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 25.0).expect("in range")
-}
-
-/// A camera at a position that looks along an azimuth and an elevation, radians.
-fn looking(eye: DVec3, azimuth: f64, elevation: f64) -> View {
-    let (level, up) = (ops::cos(elevation), ops::sin(elevation));
-    let forward = DVec3::new(level * ops::sin(azimuth), up, -level * ops::cos(azimuth));
-    let right = forward.cross(DVec3::Y).normalize();
-    View { eye, forward, right, up: right.cross(forward), far: 8.0, ..View::default() }
 }
 
 /// Solid angle of a picture, sr.
@@ -193,26 +185,6 @@ fn density_is_the_rains_with_a_shutter() {
             ..looking(DVec3::ZERO, turn * f64::from(k), 0.0)
         });
     }
-}
-
-fn field(primitives: &[WindPrimitive]) -> WindField {
-    let grid = WindGrid::new(Vec3::splat(-20.0), Vec3::splat(20.0), [32; 3]).expect("in range");
-    WindField::new(&grid, primitives, &WindMask::open(&grid)).expect("in range")
-}
-
-/// Wind of 3 m/s with a vortex of up to 3.2 m/s ahead of the eye.
-fn vortex() -> WindField {
-    field(&[
-        WindPrimitive::Uniform(WindUniform { speed: 3.0, direction: Vec3::X }),
-        WindPrimitive::Vortex(WindSingularity {
-            form: WindForm::Line,
-            strength: 120.0,
-            center: Vec3::new(0.0, 0.0, -4.0),
-            axis: Vec3::Y,
-            core_radius: 3.0,
-            core: WindCore::Rosenhead,
-        }),
-    ])
 }
 
 /// A tornado ahead of the eye, with an updraft of up to 7 m/s.

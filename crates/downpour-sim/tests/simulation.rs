@@ -1,5 +1,7 @@
 //! Rain in volumes that follow a camera: counted, uniform, and independent of the step length.
 
+mod setting;
+
 use downpour_bvh::Bvh;
 use downpour_drop::air::Air;
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
@@ -9,10 +11,8 @@ use downpour_sim::SimError;
 use downpour_sim::collision::{CollisionMap, CollisionOptions};
 use downpour_sim::simulation::{Bounce, Drag, Gauge, SimVolume, Simulation, SimulationOptions, StepInput};
 use downpour_sim::view::View;
-use downpour_wind::{
-    WindCore, WindField, WindForm, WindGrid, WindMask, WindPrimitive, WindSingularity, WindUniform,
-};
 use glam::{DVec3, Vec3};
+use setting::{looking, vortex};
 
 fn rain(rate_mm_h: f64) -> DropSizeDistribution {
     DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, rate_mm_h).expect("in range")
@@ -20,14 +20,6 @@ fn rain(rate_mm_h: f64) -> DropSizeDistribution {
 
 fn input<'a>(view: &'a View, wind: Vec3) -> StepInput<'a> {
     StepInput::new(view, DVec3::ZERO, wind)
-}
-
-/// A camera at a position that looks along an azimuth and an elevation, radians.
-fn looking(eye: DVec3, azimuth: f64, elevation: f64) -> View {
-    let (level, up) = (ops::cos(elevation), ops::sin(elevation));
-    let forward = DVec3::new(level * ops::sin(azimuth), up, -level * ops::cos(azimuth));
-    let right = forward.cross(DVec3::Y).normalize();
-    View { eye, forward, right, up: right.cross(forward), far: 8.0, ..View::default() }
 }
 
 /// A walk with pans of up to 360 degrees a second, dollies, and jumps.
@@ -151,22 +143,6 @@ fn the_gauge_reads_what_was_asked_for() {
             caught.drops
         );
     }
-}
-
-fn vortex() -> WindField {
-    let grid = WindGrid::new(Vec3::splat(-20.0), Vec3::splat(20.0), [32; 3]).expect("in range");
-    let wind = [
-        WindPrimitive::Uniform(WindUniform { speed: 3.0, direction: Vec3::X }),
-        WindPrimitive::Vortex(WindSingularity {
-            form: WindForm::Line,
-            strength: 120.0,
-            center: Vec3::new(0.0, 0.0, -4.0),
-            axis: Vec3::Y,
-            core_radius: 3.0,
-            core: WindCore::Rosenhead,
-        }),
-    ];
-    WindField::new(&grid, &wind, &WindMask::open(&grid)).expect("in range")
 }
 
 /// In a vortex drops reach the same positions at 30, 60 and 240 steps a second; with the papers' average they do not.

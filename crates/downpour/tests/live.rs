@@ -4,6 +4,7 @@
 
 #[cfg(feature = "wgpu")]
 mod device;
+mod model;
 
 use downpour::scene::Budget;
 use downpour::scene::sandbox::NoFiles;
@@ -32,7 +33,7 @@ size = [48, 27]
 /// A weather file with its model in a folder of its own.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
-    let positions: [[f32; 3]; 8] = [
+    let positions = [
         [-4.0, 0.0, -4.0],
         [4.0, 0.0, -4.0],
         [4.0, 0.0, 4.0],
@@ -42,17 +43,7 @@ fn folder() -> tempfile::TempDir {
         [0.0, 0.0, -0.5],
         [0.0, 1.0, 0.0],
     ];
-    let indices: [u32; 15] = [0, 2, 1, 0, 3, 2, 4, 5, 7, 5, 6, 7, 6, 4, 7];
-    let bytes: Vec<u8> = positions.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
-    let all = [bytes, indices.iter().flat_map(|k| k.to_le_bytes()).collect()].concat();
-    std::fs::write(folder.path().join("floor.bin"), all).unwrap();
-    let model = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
-        "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
-        "buffers":[{"uri":"floor.bin","byteLength":156}],
-        "bufferViews":[{"buffer":0,"byteLength":96},{"buffer":0,"byteOffset":96,"byteLength":60}],
-        "accessors":[{"bufferView":0,"componentType":5126,"count":8,"type":"VEC3","min":[-4,0,-4],"max":[4,1,4]},
-        {"bufferView":1,"componentType":5125,"count":15,"type":"SCALAR"}]}"#;
-    std::fs::write(folder.path().join("floor.gltf"), model).unwrap();
+    model::write(folder.path(), &positions, &[0, 2, 1, 0, 3, 2, 4, 5, 7, 5, 6, 7, 6, 4, 7]).unwrap();
     folder
 }
 

@@ -2,6 +2,8 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod model;
+
 use std::path::PathBuf;
 
 use downpour::scene::Budget;
@@ -251,19 +253,8 @@ fn stepped_rain_of_a_scene_is_that_of_the_time() {
 
 /// A floor of 40 x 40 m at height 0 as a model beside a weather file.
 fn floor(folder: &tempfile::TempDir) {
-    let corners: [[f32; 3]; 4] =
-        [[-20.0, 0.0, -20.0], [-20.0, 0.0, 20.0], [20.0, 0.0, 20.0], [20.0, 0.0, -20.0]];
-    let indices: [u32; 6] = [0, 1, 2, 0, 2, 3];
-    let bytes: Vec<u8> = corners.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
-    let all = [bytes, indices.iter().flat_map(|k| k.to_le_bytes()).collect()].concat();
-    std::fs::write(folder.path().join("floor.bin"), all).unwrap();
-    let model = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
-        "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
-        "buffers":[{"uri":"floor.bin","byteLength":72}],
-        "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24}],
-        "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[-20,0,-20],"max":[20,0,20]},
-        {"bufferView":1,"componentType":5125,"count":6,"type":"SCALAR"}]}"#;
-    std::fs::write(folder.path().join("floor.gltf"), model).unwrap();
+    let corners = [[-20.0, 0.0, -20.0], [-20.0, 0.0, 20.0], [20.0, 0.0, 20.0], [20.0, 0.0, -20.0]];
+    model::write(folder.path(), &corners, &[0, 1, 2, 0, 2, 3]).unwrap();
 }
 
 /// Checks the drops of the last of some times that a function finds.

@@ -118,7 +118,7 @@ fn advance_membrane<S: Simd, const DIAGONAL: bool>(
 ) -> u64 {
     let steps = grid.steps as usize;
     let mut reset = 0;
-    let mut stages: Vec<FrameScene> = (0..steps).map(|step| FrameScene::new(tile, step)).collect();
+    let mut stages: Vec<SweepStage> = (0..steps).map(|step| SweepStage::new(tile, step)).collect();
     let [_, rows] = tile.reach(tile.halo);
     for front in rows.start..rows.end + 2 * steps {
         for (step, stage) in stages.iter_mut().enumerate() {
@@ -138,14 +138,14 @@ fn advance_membrane<S: Simd, const DIAGONAL: bool>(
 }
 
 /// Input and output of one step of a membrane on a tile: columns and rows.
-struct FrameScene {
+struct SweepStage {
     argued: [Range<usize>; 2],
     kicked: [Range<usize>; 2],
     /// First row whose argument is not yet computed.
     next: usize,
 }
 
-impl FrameScene {
+impl SweepStage {
     fn new(tile: &Tile, step: usize) -> Self {
         let argued = tile.reach(tile.halo - step);
         Self { next: argued[1].start, argued, kicked: tile.reach(tile.halo - step - 1) }

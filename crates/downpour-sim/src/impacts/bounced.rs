@@ -84,8 +84,7 @@ impl RainField {
                     sent_up(drop.id) && {
                         let range = view.range(f64::from(drop.diameter * bounce.size), least_pixels);
                         let (middle, radius) = travels.ball(self, drop, bounce);
-                        let (offset, radius) = (middle - view.eye, radius + curved + origins.margin);
-                        offset.length() - radius <= range && within(swept_sides, offset, radius)
+                        may_be_seen((middle, radius + curved + origins.margin), range, view, swept_sides)
                     }
                 };
                 Some(OfClass { bounds, in_part, wanted })
@@ -125,14 +124,16 @@ impl RainField {
         });
         Ok(listed.collect())
     }
-}
 
-impl RainField {
     /// Distance that the wind carries the drops that follow it best, from a time to another, m.
     fn carried(&self, begin_s: f64, end_s: f64) -> f64 {
         let slowest = self.classes.iter().map(|class| class.speeds[0]).fold(f64::INFINITY, f64::min);
-        let [from, to] = [begin_s, end_s].map(|time| Drift::new(&self.wind, time).of(slowest)[0]);
-        if slowest.is_finite() { from.distance(to) } else { 0.0 }
+        if !slowest.is_finite() {
+            return 0.0;
+        }
+        let lag = relaxation(slowest).horizontal_s;
+        let [from, to] = [begin_s, end_s].map(|time| self.wind.prepared(time).followed(lag).displacement);
+        from.distance(to)
     }
 }
 
@@ -243,9 +244,14 @@ impl Origins {
     fn may_be_in(&self, place: &Bounds, view: &View, sides: &[DVec3; 5]) -> bool {
         let (low, high) = (place.low + self.way.low, place.high + self.way.high);
         let radius = 0.5 * (high - low).length() + self.margin;
-        let offset = low.midpoint(high) - view.eye;
-        offset.length() - radius <= self.range && within(sides, offset, radius)
+        may_be_seen((low.midpoint(high), radius), self.range, view, sides)
     }
+}
+
+/// False if a ball, by its middle and its radius, m, is farther from the eye than `range` or outside of the picture's sides.
+fn may_be_seen((middle, radius): (DVec3, f64), range: f64, view: &View, sides: &[DVec3; 5]) -> bool {
+    let offset = middle - view.eye;
+    offset.length() - radius <= range && within(sides, offset, radius)
 }
 
 /// A droplet after its rebound.

@@ -18,13 +18,8 @@ impl SceneBuilder {
     #[must_use]
     pub fn texture(&mut self, width: u32, height: u32, texels: &[[u8; 4]], of: TextureUse) -> TextureSlot {
         let decode: Vec<f32> = (0..=255u8)
-            .map(|v| {
-                if of == TextureUse::Color {
-                    srgb_to_linear(f32::from(v) / 255.0)
-                } else {
-                    f32::from(v) / 255.0
-                }
-            })
+            .map(|v| f32::from(v) / 255.0)
+            .map(|v| if of == TextureUse::Color { srgb_to_linear(v) } else { v })
             .collect();
         let mut all: Vec<[f32; 4]> = texels
             .iter()
