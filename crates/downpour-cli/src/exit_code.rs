@@ -13,8 +13,8 @@ use downpour::shower::ShowerError;
 use downpour::sim::SimError;
 use downpour::specimen::SpecimenError;
 use downpour::street::StreetError;
+use downpour::trace::frame_scene::FrameSceneError;
 use downpour::trace::puddle::PuddleError;
-use downpour::trace::stage::FrameSceneError;
 use downpour::wind::WindError;
 
 /// Any error without a specific code, such as a bug in Downpour.

@@ -9,7 +9,7 @@ use downpour::drop::shape::{MAX_DIAMETER, MIN_DIAMETER};
 use downpour::drop::water::TEMPERATURE_RANGE_C;
 use downpour::mask::SIZES;
 use downpour::specimen::{MAX_EXPOSURE_S, SpecimenLamp};
-use downpour::trace::stage::LATEST_S;
+use downpour::trace::frame_scene::LATEST_S;
 
 /// Minimum temperature of water, in Celsius, with a known refractive index.
 const MIN_INDEX_C: f64 = -12.0;

@@ -141,15 +141,19 @@ impl Camera {
         ray / ray.dot(ray).sqrt()
     }
 
+    /// Position on the picture of a point relative to the eye, right and up from the middle in halves of the picture; `depth`
+    /// is the point's part along the view direction, or what a caller divides by in its place.
+    #[must_use]
+    pub fn camera_place(&self, point: Vec3, depth: f32) -> Vec2 {
+        let (right, up) = (self.right, self.up);
+        Vec2::new(point.dot(right) / (right.dot(right) * depth), point.dot(up) / (up.dot(up) * depth))
+    }
+
     /// Position on the picture, in pixels from the top left, of a point relative to the eye.
     #[must_use]
     pub fn camera_project(&self, point: Vec3) -> Vec2 {
-        let (right, up) = (self.right, self.up);
-        let depth = point.dot(self.forward);
-        Vec2::new(
-            (0.5 + 0.5 * point.dot(right) / (right.dot(right) * depth)) * self.width as f32,
-            (0.5 - 0.5 * point.dot(up) / (up.dot(up) * depth)) * self.height as f32,
-        )
+        let place = self.camera_place(point, point.dot(self.forward));
+        Vec2::new((0.5 + 0.5 * place.x) * self.width as f32, (0.5 - 0.5 * place.y) * self.height as f32)
     }
 }
 

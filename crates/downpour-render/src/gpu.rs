@@ -17,7 +17,7 @@ pub mod tiles;
 mod tone;
 
 pub use drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
-pub use glass::{BehindGlass, GlassRenderer};
+pub use glass::{BehindGlass, EnvironmentMap, GlassRenderer};
 pub use glow::{GlowPass, GlowPipeline};
 pub use host::{HostPass, HostPipeline, HostTextures};
 pub use medium::{MediumPass, MediumPipeline};

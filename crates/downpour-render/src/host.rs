@@ -132,13 +132,11 @@ pub fn host_plate(frame: &HostPlateFrame, color: &[[f32; 4]], depth: &[f32]) -> 
 #[must_use]
 pub fn host_environment_position(camera: &Camera, direction: Vec3) -> Vec3 {
     let along = direction.dot(camera.forward);
-    let depth = along.abs().max(HOST_MIN_DEPTH);
-    let x = direction.dot(camera.right) / (camera.right.dot(camera.right) * depth);
-    let y = -direction.dot(camera.up) / (camera.up.dot(camera.up) * depth);
-    let place = |v: f32, size: u32| (0.5 + 0.5 * v.clamp(-1.0, 1.0)) * size as f32;
-    let outside = (x.abs().max(y.abs()) - 1.0).clamp(0.0, 1.0);
+    let place = camera.camera_place(direction, along.abs().max(HOST_MIN_DEPTH));
+    let at = |v: f32, size: u32| (0.5 + 0.5 * v.clamp(-1.0, 1.0)) * size as f32;
+    let outside = (place.x.abs().max(place.y.abs()) - 1.0).clamp(0.0, 1.0);
     let outside = if along <= 0.0 { 1.0 } else { outside };
-    Vec3::new(place(x, camera.width), place(y, camera.height), outside)
+    Vec3::new(at(place.x, camera.width), at(-place.y, camera.height), outside)
 }
 
 impl HostEnvironmentFrame {

@@ -159,16 +159,12 @@ impl RainField {
             }
             None => (None, vec![1.0; sizes.len()]),
         };
-        let mut classes = Vec::new();
-        for ((number, (k, [lower, upper])), needed) in spans.into_iter().enumerate().zip(needed) {
+        let class = |(number, ((k, [lower, upper]), needed)): (usize, ((u32, [f64; 2]), f64))| {
             let part = rain.restricted_to(lower, upper)?;
             let mm = lower * 1.0e3;
             let (edge, period) = ((0.25 * mm).clamp(0.05, 2.0), (8.0 * mm).clamp(2.0, 64.0));
             let density = part.number_density() * needed;
-            if let Some(thinning) = &mut thinning {
-                thinning.push([lower, upper], period);
-            }
-            classes.push(Class {
+            Ok(Class {
                 number,
                 seed: class_seed(seed, k),
                 largest: upper,
@@ -178,7 +174,16 @@ impl RainField {
                 count: ChainCount::new(density * edge * edge * period),
                 edge,
                 period,
-            });
+            })
+        };
+        // The tables of a class take a millisecond or more, and a rain that is changed by hand makes all of them anew.
+        let classes: Vec<Result<Class, SimError>> =
+            spans.into_par_iter().zip(needed).enumerate().map(class).collect();
+        let classes = classes.into_iter().collect::<Result<Vec<_>, _>>()?;
+        if let Some(thinning) = &mut thinning {
+            for (span, class) in sizes.iter().zip(&classes) {
+                thinning.push(*span, class.period);
+            }
         }
         let thinning = thinning.map(Arc::new);
         Ok(Self { classes, speed, wind: Wind::default().air().clone(), thinning })

@@ -6,7 +6,7 @@
 //! - [`capture`]: radiance from every direction around the eye, for the drops;
 //! - [`emitter`]: surfaces that shine, as lights;
 //! - [`wet`]: surfaces that rain has made wet; [`puddle`], [`wet_ground`]: water that stands on the ground; [`pane_shadow`]: the light through a wet pane;
-//! - [`stage`]: the scene and the eye of a weather at a time;
+//! - [`frame_scene`]: the scene and the eye of a weather at a time;
 //! - [`truth`]: what the pixels of a picture show, in numbers;
 //! - [`picture`]: the plate of a scene, and the rain of [`downpour_render`] before it.
 
@@ -29,6 +29,7 @@ mod emitter;
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 pub mod emitter;
+pub mod frame_scene;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
 pub mod kept;
@@ -58,7 +59,6 @@ mod skylight;
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 pub mod skylight;
-pub mod stage;
 #[cfg(not(feature = "parity"))]
 mod surface;
 #[cfg(feature = "parity")]
@@ -85,12 +85,12 @@ pub mod wet_ground;
 pub use builder::{MeshPart, SceneBuilder};
 pub use capture::trace_environment;
 pub use data::{RenderFrame, SceneData};
+pub use frame_scene::{FrameScene, FrameSceneError};
 pub use material::{MaterialLook, TextureSlot, TextureUse};
 pub use picture::{picture_frame, render_picture};
 pub use puddle::{PuddleError, PuddleLook, PuddleMap};
 pub use scene::SceneView;
 pub use sky_light::SkyLight;
-pub use stage::{FrameScene, FrameSceneError};
 pub use wet::SceneWetness;
 pub use wet_ground::WetGround;
 

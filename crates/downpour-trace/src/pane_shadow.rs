@@ -17,8 +17,8 @@ use downpour_shaders::render::pane_shadow::{PANE_SHADOW_LEVELS, PANE_SHADOW_PEAK
 use glam::{DVec3, Vec2, Vec3};
 
 use crate::data::SceneData;
+use crate::frame_scene::FrameScene;
 use crate::scene::SceneView;
-use crate::stage::FrameScene;
 
 impl SceneData {
     /// Removes the rows of the pane, which are the last of the table, and returns them; none without a pane.

@@ -4,11 +4,11 @@ use downpour_scene::picture::{Picture, Pixels};
 use downpour_weather::{Loaded, Puddle, PuddleFill, PuddleShape, Weather};
 use glam::{DVec3, Vec2, Vec3};
 
+use crate::frame_scene::FrameScene;
 use crate::puddle::{
     FillLimits, Filling, Ground, PuddleError, PuddleGround, PuddleLook, PuddleMap, PuddleRows, Relief,
     Ripples,
 };
-use crate::stage::FrameScene;
 
 /// Mixed into the rain's seed, so that drops on water are not the drops in the air.
 const SEED: u64 = 0x7075_6464_6c65_0001;

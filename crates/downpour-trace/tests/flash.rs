@@ -5,8 +5,8 @@ use downpour_render::camera::Viewpoint;
 use downpour_scene::scene::{Light, LightKind, Local, Material, Mesh, Node, Primitive, Scene};
 use downpour_scene::sky::{SkyMap, Sun};
 use downpour_trace::data::RenderFrame;
+use downpour_trace::frame_scene::FrameScene;
 use downpour_trace::scene::SceneView;
-use downpour_trace::stage::FrameScene;
 use downpour_weather::{FlashLight, Loaded, Weather};
 use glam::{Affine3A, Vec2, Vec3};
 

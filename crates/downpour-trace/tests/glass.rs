@@ -11,11 +11,11 @@ use downpour_scene::scene::Scene;
 use downpour_scene::sky::SkyMap;
 use downpour_trace::builder::{MeshPart, SceneBuilder};
 use downpour_trace::data::{RenderFrame, SceneData};
+use downpour_trace::frame_scene::FrameScene;
 use downpour_trace::material::MaterialLook;
 use downpour_trace::pane_shadow::{is_lit_through, set_pane};
 use downpour_trace::scene::SceneView;
 use downpour_trace::sky_light::SkyLight;
-use downpour_trace::stage::FrameScene;
 use downpour_weather::{Loaded, Weather};
 use glam::{Affine3A, Vec2, Vec3};
 

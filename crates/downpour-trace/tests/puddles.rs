@@ -254,7 +254,7 @@ fn a_weathers_puddles_lie_on_its_stage() -> Outcome {
         drop_model: None,
         warnings: Vec::new(),
     };
-    let mut stage = downpour_trace::stage::FrameScene::new(&weather, &loaded, 0.0)?;
+    let mut stage = downpour_trace::frame_scene::FrameScene::new(&weather, &loaded, 0.0)?;
     // Nothing but air is there: no ground, no water.
     let ground =
         downpour_trace::wet_ground::WetGround::new(&weather, &loaded, &stage, 0.0)?.ok_or("puddles")?;

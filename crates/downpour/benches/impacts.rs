@@ -6,7 +6,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use downpour::Source;
 use downpour::scene::Budget;
 use downpour::shower::Shower;
-use downpour::trace::stage::FrameScene;
+use downpour::trace::frame_scene::FrameScene;
 
 fn impacts(c: &mut Criterion) {
     for name in ["day", "storm"] {

@@ -26,9 +26,9 @@ use downpour::render::rain::{DropMasks, Exposure, Rain, RainOptions, StreakColor
 use downpour::scene::Budget;
 use downpour::sim::field::{DropKind, FallingDrop};
 use downpour::trace::data::RenderFrame;
+use downpour::trace::frame_scene::FrameScene;
 use downpour::trace::gpu::{SceneOnGpu, ScenePipeline};
 use downpour::trace::scene::SceneView;
-use downpour::trace::stage::FrameScene;
 use downpour::weather::{Roots, Weather, load};
 
 /// Seconds.

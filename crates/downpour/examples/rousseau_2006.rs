@@ -18,9 +18,9 @@ use downpour::render::gpu::RainPipeline;
 use downpour::render::rain::{DropMasks, Rain, RainOptions};
 use downpour::scene::Budget;
 use downpour::sim::field::{DropKind, FallingDrop};
+use downpour::trace::frame_scene::FrameScene;
 use downpour::trace::gpu::ScenePipeline;
 use downpour::trace::scene::SceneView;
-use downpour::trace::stage::FrameScene;
 use downpour::weather::{Roots, Weather, load};
 
 /// Metres.

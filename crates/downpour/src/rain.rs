@@ -21,10 +21,10 @@ use downpour_sim::shelter::Obstacles;
 use downpour_sim::view::View;
 use downpour_trace::builder::{MeshPart, SceneBuilder};
 use downpour_trace::data::{RenderFrame, SceneData};
+use downpour_trace::frame_scene::{MAX_LIGHTS, MAX_TRIANGLES, view_of};
 use downpour_trace::gpu::SceneOnGpu;
 use downpour_trace::scene::SceneView;
 use downpour_trace::sky_light::SkyLight;
-use downpour_trace::stage::{MAX_LIGHTS, MAX_TRIANGLES, view_of};
 use glam::{Affine3A, DVec3, Vec3};
 
 use crate::shower::fall_speed;

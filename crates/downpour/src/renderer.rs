@@ -29,9 +29,9 @@ use downpour_scene::Budget;
 use downpour_scene::scene::Scene;
 use downpour_trace::capture::trace_environment;
 use downpour_trace::data::RenderFrame;
+use downpour_trace::frame_scene::{FrameScene, LATEST_S};
 use downpour_trace::pane_shadow::{is_lit_through, set_pane};
 use downpour_trace::scene::SceneView;
-use downpour_trace::stage::{FrameScene, LATEST_S};
 use downpour_trace::wet_ground::WetGround;
 use downpour_weather::{CameraPath, Loaded, StreakLook, Weather};
 

@@ -22,7 +22,7 @@ use glam::DVec3;
 
 use downpour_render::glass::pane_plane;
 use downpour_render::rain::{DropMasks, MediumOptions, PanePlane, RainMedium};
-use downpour_trace::stage::FrameScene;
+use downpour_trace::frame_scene::FrameScene;
 use dripping::Dripping;
 pub use error::ShowerError;
 pub use scenery::{MovingEye, MovingScenery, Scenery, Still};

@@ -9,7 +9,7 @@ use downpour::render::rain::Exposure;
 use downpour::scene::Budget;
 use downpour::scene::sandbox::NoFiles;
 use downpour::shower::{Shower, Still};
-use downpour::trace::stage::FrameScene;
+use downpour::trace::frame_scene::FrameScene;
 use downpour::weather::{Weather, load};
 
 fn weather(volume: &str, temperature_c: f64, pressure_hpa: f64) -> Result<Weather, Box<dyn Error>> {

@@ -7,7 +7,7 @@ use downpour::scene::Budget;
 use downpour::scene::sandbox::NoFiles;
 use downpour::shower::{MovingScenery, Shower};
 use downpour::sim::field::FallingDrop;
-use downpour::trace::stage::FrameScene;
+use downpour::trace::frame_scene::FrameScene;
 use downpour::weather::{Weather, load};
 use glam::DVec3;
 

@@ -10,7 +10,7 @@ use downpour::scene::Budget;
 use downpour::scene::SceneError;
 use downpour::shower::{MovingScenery, Shower};
 use downpour::sim::field::VisibleDrops;
-use downpour::trace::stage::FrameScene;
+use downpour::trace::frame_scene::FrameScene;
 use downpour::weather::{CameraPath, CameraPose};
 use downpour::wind::Keyed;
 use downpour::{Backend, Device, Renderer, RendererError, RendererOptions, Source};

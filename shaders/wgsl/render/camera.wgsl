@@ -33,11 +33,17 @@ fn camera_direction(camera: RenderCamera, x: f32, y: f32) -> vec3f {
     return ray / sqrt(dot(ray, ray));
 }
 
+// Position on the picture of a point relative to the eye, right and up from the middle in halves of the picture; `depth` is
+// the point's part along the view direction, or what a caller divides by in its place.
+fn camera_place(camera: RenderCamera, point: vec3f, depth: f32) -> vec2f {
+    return vec2f(
+        dot(point, camera.right) / (dot(camera.right, camera.right) * depth),
+        dot(point, camera.up) / (dot(camera.up, camera.up) * depth),
+    );
+}
+
 // Position on the picture, in pixels from the top left, of a point relative to the eye.
 fn camera_project(camera: RenderCamera, point: vec3f) -> vec2f {
-    let depth = dot(point, camera.forward);
-    return vec2f(
-        (0.5 + 0.5 * dot(point, camera.right) / (dot(camera.right, camera.right) * depth)) * f32(camera.width),
-        (0.5 - 0.5 * dot(point, camera.up) / (dot(camera.up, camera.up) * depth)) * f32(camera.height),
-    );
+    let place = camera_place(camera, point, dot(point, camera.forward));
+    return vec2f((0.5 + 0.5 * place.x) * f32(camera.width), (0.5 - 0.5 * place.y) * f32(camera.height));
 }

@@ -213,12 +213,7 @@ fn glass_picture_environment(direction: vec3f, footprint: f32) -> vec3f {
 // Projects a direction onto the picture: -1 to 1 right and up, and its depth.
 fn glass_picture_project(direction: vec3f) -> vec3f {
     let depth = dot(direction, glass_picture_frame.camera.forward);
-    let near = max(depth, 1.0e-6);
-    return vec3f(
-        dot(direction, glass_picture_frame.camera.right) / dot(glass_picture_frame.camera.right, glass_picture_frame.camera.right) / near,
-        dot(direction, glass_picture_frame.camera.up) / dot(glass_picture_frame.camera.up, glass_picture_frame.camera.up) / near,
-        depth,
-    );
+    return vec3f(camera_place(glass_picture_frame.camera, direction, max(depth, 1.0e-6)), depth);
 }
 
 // Radiance along a ray that begins at an offset from the eye. Its footprint is an angle.

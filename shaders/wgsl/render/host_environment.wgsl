@@ -25,13 +25,11 @@ struct HostEnvironmentFrame {
 // Position on the picture of a direction, pixels, clamped to its borders, and how far outside it is, in halves of the picture.
 fn host_environment_position(camera: RenderCamera, direction: vec3f) -> vec3f {
     let along = dot(direction, camera.forward);
-    let depth = max(abs(along), HOST_MIN_DEPTH);
-    let x = dot(direction, camera.right) / (dot(camera.right, camera.right) * depth);
-    let y = -dot(direction, camera.up) / (dot(camera.up, camera.up) * depth);
+    let place = camera_place(camera, direction, max(abs(along), HOST_MIN_DEPTH));
     let size = vec2f(f32(camera.width), f32(camera.height));
-    let place = (0.5 + 0.5 * clamp(vec2f(x, y), vec2f(-1.0), vec2f(1.0))) * size;
-    let outside = clamp(max(abs(x), abs(y)) - 1.0, 0.0, 1.0);
-    return vec3f(place, select(outside, 1.0, along <= 0.0));
+    let at = (0.5 + 0.5 * clamp(vec2f(place.x, -place.y), vec2f(-1.0), vec2f(1.0))) * size;
+    let outside = clamp(max(abs(place.x), abs(place.y)) - 1.0, 0.0, 1.0);
+    return vec3f(at, select(outside, 1.0, along <= 0.0));
 }
 
 // A texel of a level of the picture; the nearest where there is none.

@@ -11,7 +11,7 @@ use downpour_render::glass::water::{
 use downpour_render::glass::{
     GlassPicture, GlassPictureBlade, GlassPictureDrop, GlassPictureLight, WetPane, glass_picture_spline,
 };
-use downpour_render::gpu::{BehindGlass, GlassRenderer};
+use downpour_render::gpu::{BehindGlass, EnvironmentMap, GlassRenderer};
 use downpour_render::picture::compose_pixel;
 use downpour_scene::scene::Scene;
 use downpour_scene::sky::{SkyMap, Sun};
@@ -20,8 +20,8 @@ use downpour_shaders::common::PYRAMID_KERNEL;
 use downpour_shaders::render::glass::{BLADE, GLASS_PICTURE, GLASS_PICTURE_KERNEL, LIGHT, WATER};
 use downpour_shaders::render::rain::COMPOSE_KERNEL;
 use downpour_trace::data::RenderFrame;
+use downpour_trace::frame_scene::FrameScene;
 use downpour_trace::scene::SceneView;
-use downpour_trace::stage::FrameScene;
 use downpour_weather::{Loaded, Weather};
 use glam::{Vec2, Vec3};
 
@@ -277,7 +277,8 @@ fn case(gpu: &Gpu, keys: &str) -> Result<Run, GpuError> {
     let cpu = kept(&format!("{keys} through"), || glass.through(&behind, &capture));
     let [plate, rain] = [gpu.storage_buffer("plate", &plate)?, gpu.storage_buffer("rain", &rain)?];
     let environment = gpu.storage_buffer("environment map", &capture)?;
-    let seen = BehindGlass { plate: &plate, rain: &rain, environment: &environment };
+    let seen =
+        BehindGlass { plate: &plate, rain: &rain, environment: EnvironmentMap::OnDevice(&environment) };
     let renderer = GlassRenderer::new(gpu)?;
     let first = renderer.through(&glass, &seen)?;
     let buffers = renderer.buffers_made();

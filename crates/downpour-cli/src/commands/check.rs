@@ -6,8 +6,8 @@ use downpour::render::glass::WetPane;
 use downpour::render::rain::drop_model;
 use downpour::scene::{Budget, scene::Texture};
 use downpour::shower::Shower;
+use downpour::trace::frame_scene::{CameraChoice, FrameScene};
 use downpour::trace::puddle::PuddleMap;
-use downpour::trace::stage::{CameraChoice, FrameScene};
 use downpour::trace::wet_ground::WetGround;
 use downpour::weather::Observer;
 

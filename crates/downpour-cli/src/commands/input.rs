@@ -6,7 +6,7 @@ use clap::Args;
 use downpour::Source;
 use downpour::render::camera::check_size;
 use downpour::scene::Budget;
-use downpour::trace::stage::FrameScene;
+use downpour::trace::frame_scene::FrameScene;
 use downpour::weather::{Loaded, Observer, Weather};
 use glam::DVec3;
 

@@ -7,7 +7,7 @@ use downpour::render::file::write_png;
 use downpour::render::wind_picture::{WindPicture, WindPlane, WindSlice, draw_wind};
 use downpour::scene::Budget;
 use downpour::shower::{Shower, Still};
-use downpour::trace::stage::FrameScene;
+use downpour::trace::frame_scene::FrameScene;
 use downpour::weather::Weather;
 use downpour::wind::primitive::velocity;
 use downpour::wind::turbulence::wind_turbulence_velocity;

@@ -78,16 +78,9 @@ impl PaneTracer<'_> {
 
     /// Projects a direction onto the picture: -1 to 1 right and up, and its depth.
     fn glass_picture_project(&self, direction: Vec3) -> Vec3 {
-        let frame = &self.glass.frame;
-        let [right, up, forward] =
-            [frame.camera.right, frame.camera.up, frame.camera.forward].map(Vec3::from);
-        let depth = direction.dot(forward);
-        let near = depth.max(1.0e-6);
-        Vec3::new(
-            direction.dot(right) / right.dot(right) / near,
-            direction.dot(up) / up.dot(up) / near,
-            depth,
-        )
+        let camera = &self.glass.frame.camera;
+        let depth = direction.dot(camera.forward);
+        camera.camera_place(direction, depth.max(1.0e-6)).extend(depth)
     }
 
     /// Radiance along a ray that begins at an offset from the eye. Its footprint is an angle.

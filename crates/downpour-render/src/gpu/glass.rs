@@ -33,8 +33,17 @@ pub struct BehindGlass<'a> {
     pub plate: &'a wgpu::Buffer,
     /// The rain before it: radiance and transmittance of each pixel.
     pub rain: &'a wgpu::Buffer,
-    /// The environment map, all levels.
-    pub environment: &'a wgpu::Buffer,
+    /// The environment map.
+    pub environment: EnvironmentMap<'a>,
+}
+
+/// An environment map with all of its levels.
+#[derive(Clone, Copy, Debug)]
+pub enum EnvironmentMap<'a> {
+    /// Of a buffer of the device.
+    OnDevice(&'a wgpu::Buffer),
+    /// Of these texels, for which the pane has a buffer.
+    Texels(&'a [[f32; 4]]),
 }
 
 impl GlassRenderer {
@@ -104,6 +113,10 @@ impl GlassRenderer {
         let lens = pool.storage("points of the lens", &glass.lens)?;
         let lights = pool.storage("lamps before glass", &glass.lights)?;
         let behind = self.behind(&pool, glass, seen)?;
+        let environment = match seen.environment {
+            EnvironmentMap::OnDevice(buffer) => buffer.clone(),
+            EnvironmentMap::Texels(texels) => pool.storage("environment map of a pane", texels)?,
+        };
         let pixels = u64::from(frame.camera.width) * u64::from(frame.camera.height);
         let made = pool.buffer(MADE, pixels * 16, wgpu::BufferUsages::STORAGE)?;
         let row = frame.camera.width.max(1).saturating_mul(frame.samples.max(1));
@@ -111,7 +124,7 @@ impl GlassRenderer {
         for first_row in (0..frame.camera.height).step_by(rows as usize) {
             let band = GlassPictureFrame { first_row, ..*frame };
             let uniform = pool.uniform("glass picture frame", &band)?;
-            let buffers = [&uniform, &drops, &bins, &wet, &lens, &behind, seen.environment, &made, &lights];
+            let buffers = [&uniform, &drops, &bins, &wet, &lens, &behind, &environment, &made, &lights];
             let bindings = self.kernel.bind(gpu, &buffers)?;
             let groups =
                 [frame.camera.width.div_ceil(8), rows.min(frame.camera.height - first_row).div_ceil(8), 1];

@@ -16,8 +16,8 @@ use rayon::prelude::*;
 use downpour_render::RenderError;
 use downpour_render::camera::{Camera, Viewpoint};
 use downpour_render::gpu::{
-    BehindGlass, FallingOnGpu, GlowPipeline, RainOnGpu, RainPipeline, RefinePipeline, TonePipeline,
-    TonedLayers,
+    BehindGlass, EnvironmentMap, FallingOnGpu, GlowPipeline, RainOnGpu, RainPipeline, RefinePipeline,
+    TonePipeline, TonedLayers,
 };
 use downpour_render::picture::{DeviceUse, Picture, PictureOptions};
 use downpour_render::rain::{DropMasks, Rain};
@@ -412,7 +412,11 @@ impl PictureOnGpu {
     /// Its layers, for a pane of glass that it is seen through.
     #[must_use]
     pub fn behind_glass(&self) -> BehindGlass<'_> {
-        BehindGlass { plate: &self.clean, rain: &self.layer, environment: &self.environment }
+        BehindGlass {
+            plate: &self.clean,
+            rain: &self.layer,
+            environment: EnvironmentMap::OnDevice(&self.environment),
+        }
     }
 
     /// Begins to read the picture back, without waiting for the device.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use downpour::sim::field::VisibleDrops;
-use downpour::trace::stage::FrameScene;
+use downpour::trace::frame_scene::FrameScene;
 use glam::{DVec2, DVec3};
 
 /// A picture.

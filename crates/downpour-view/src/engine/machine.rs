@@ -155,7 +155,7 @@ fn is_lost(error: &RendererError) -> bool {
 }
 
 /// The camera of a picture.
-fn view(weather: &Weather, stage: &downpour::trace::stage::FrameScene, time_s: f64) -> PictureView {
+fn view(weather: &Weather, stage: &downpour::trace::frame_scene::FrameScene, time_s: f64) -> PictureView {
     let [width, height] = stage.size.map(f64::from);
     let now = weather.at(time_s);
     let first = &stage.viewpoint;

@@ -7,9 +7,9 @@ use downpour_render::glass::{GlassPicture, WetPane};
 use downpour_render::glow::Glow;
 use downpour_render::picture::{Picture, PictureOptions, timed};
 use downpour_render::rain::DropMasks;
+use downpour_trace::frame_scene::FrameScene;
 use downpour_trace::kept::KeptPlate;
 use downpour_trace::picture::{TracedPlate, render_picture_on};
-use downpour_trace::stage::FrameScene;
 use downpour_weather::Weather;
 
 use super::RendererError;

@@ -7,8 +7,8 @@ use downpour_mask::MaskError;
 use downpour_render::RenderError;
 use downpour_render::glass::PaneError;
 use downpour_scene::SceneError;
+use downpour_trace::frame_scene::FrameSceneError;
 use downpour_trace::puddle::PuddleError;
-use downpour_trace::stage::FrameSceneError;
 
 /// Reason why there is no frame. Messages are one line: the file or the quantity, what was found, what is allowed.
 #[derive(Debug, thiserror::Error)]

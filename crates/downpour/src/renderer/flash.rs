@@ -5,7 +5,7 @@
 
 use downpour_render::rain::{Exposure, TemporalResponse};
 use downpour_sim::field::{EyeDrop, FallingDrop, VisibleDrops};
-use downpour_trace::stage::FrameScene;
+use downpour_trace::frame_scene::FrameScene;
 use downpour_weather::{FlashExposure, Observer};
 
 use super::computer::Painted;

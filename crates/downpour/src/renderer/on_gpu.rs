@@ -5,15 +5,15 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use downpour_gpu::Gpu;
-use downpour_render::gpu::{BehindGlass, GlassRenderer};
+use downpour_render::gpu::{BehindGlass, EnvironmentMap, GlassRenderer};
 use downpour_render::picture::PictureOptions;
 use downpour_render::rain::DropMasks;
 use downpour_sim::field::{EyeDrop, RainField};
 use downpour_sim::gpu::{FieldOnGpu, FieldSearch};
+use downpour_trace::frame_scene::FrameScene;
 use downpour_trace::gpu::{
     DisplayReadback, FieldDrops, PictureDrops, PictureOnGpu, PictureRenderer, PictureUse,
 };
-use downpour_trace::stage::FrameScene;
 
 use super::RendererError;
 use super::computer::{Painted, PaneView, ThroughGlass};
@@ -90,12 +90,9 @@ impl OnGpu {
             return Ok(Painted::OnItsWay { read: Box::new(drawn.begin_read()?), through_glass: None });
         };
         let begin = Instant::now();
-        let uploaded = environment
-            .as_ref()
-            .map(|texels| self.gpu.storage_buffer("environment map of a pane", texels))
-            .transpose()?;
         let behind = drawn.behind_glass();
-        let environment = uploaded.as_ref().unwrap_or(behind.environment);
+        let environment =
+            environment.as_ref().map_or(behind.environment, |texels| EnvironmentMap::Texels(texels));
         let seen = self.pane()?.through(glass, &BehindGlass { environment, ..behind })?;
         drawn.passes.push(("glass", begin.elapsed().as_secs_f64() * 1.0e3));
         let through_glass = Some(Box::new(ThroughGlass { seen, glow: *glow, camera: *camera }));

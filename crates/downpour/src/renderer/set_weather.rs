@@ -7,7 +7,7 @@ use downpour_render::rain::DropMasks;
 use downpour_scene::Budget;
 use downpour_scene::sandbox::Files;
 use downpour_scene::scene::Scene;
-use downpour_trace::stage::FrameScene;
+use downpour_trace::frame_scene::FrameScene;
 use downpour_weather::Weather;
 
 use super::{Renderer, RendererError, RendererOptions, atlas_of};

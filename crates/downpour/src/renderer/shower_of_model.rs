@@ -5,7 +5,7 @@
 //! that drops scatter forwards is then many times that of the clouds behind them.
 
 use downpour_math::ops::f64 as ops;
-use downpour_trace::stage::{FrameScene, FrameSceneError};
+use downpour_trace::frame_scene::{FrameScene, FrameSceneError};
 use downpour_weather::{Loaded, SkySource, SunSource, Weather};
 use glam::DVec3;
 

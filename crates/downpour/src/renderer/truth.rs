@@ -6,9 +6,9 @@ use downpour_render::file::Samples;
 use downpour_render::picture::{Picture, PictureOptions};
 use downpour_render::rain::{DropMasks, Rain};
 use downpour_sim::field::VisibleDrops;
+use downpour_trace::frame_scene::FrameScene;
 use downpour_trace::picture::picture_frame;
 use downpour_trace::scene::SceneView;
-use downpour_trace::stage::FrameScene;
 use downpour_trace::truth::SurfaceTruth;
 
 use super::RendererError;

@@ -9,7 +9,7 @@ use downpour_sim::field::FallingDrop;
 use downpour_sim::shelter::Obstacles;
 use downpour_sim::view::View;
 use downpour_trace::data::SceneData;
-use downpour_trace::stage::FrameScene;
+use downpour_trace::frame_scene::FrameScene;
 use downpour_weather::{RAINED_S, Weather};
 use glam::DVec3;
 

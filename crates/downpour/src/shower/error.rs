@@ -6,7 +6,7 @@ use downpour_wind::WindError;
 
 use downpour_render::RenderError;
 use downpour_render::glass::PaneError;
-use downpour_trace::stage::FrameSceneError;
+use downpour_trace::frame_scene::FrameSceneError;
 
 /// Reason why there is no rain.
 #[derive(Debug, thiserror::Error)]

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use downpour_sim::view::View;
 use downpour_weather::{Loaded, Weather};
 
-use downpour_trace::stage::{FrameScene, FrameSceneError};
+use downpour_trace::frame_scene::{FrameScene, FrameSceneError};
 
 /// A scene over time.
 pub trait Scenery {

@@ -21,7 +21,7 @@ use glam::{DVec3, Vec3};
 
 use super::scenery::Scenery;
 use super::{ShowerError, bounce};
-use downpour_trace::stage::FrameScene;
+use downpour_trace::frame_scene::FrameScene;
 
 /// Steps of a second.
 const STEPS_PER_S: f64 = 60.0;

@@ -138,6 +138,22 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             profiles_groups_of(a.u32()).words()
         }),
         FunctionCase::new(
+            "camera_place",
+            &downpour_shaders::render::camera::CAMERA,
+            &[
+                Made(camera_words),
+                Uniform(-40.0, 40.0),
+                Uniform(-40.0, 40.0),
+                Uniform(-40.0, 40.0),
+                Uniform(0.5, 40.0),
+            ],
+            Tol::relative(1.0e-6, 1.0e-5, "quotients (2.5 ulp) of sums of three products of up to 40 m"),
+            |a| {
+                let camera = bytemuck::cast::<[f32; 16], Camera>(a.f32s());
+                camera.camera_place(Vec3::from(a.f32s()), a.f32()).to_array().words()
+            },
+        ),
+        FunctionCase::new(
             "camera_project",
             &downpour_shaders::render::camera::CAMERA,
             &[Made(camera_words), Uniform(-3.0, 3.0), Uniform(-2.0, 2.0), Uniform(-9.0, -1.0)],

@@ -11,7 +11,7 @@ use std::fs;
 use std::sync::mpsc::sync_channel;
 use std::thread;
 
-use downpour::trace::stage::LATEST_S;
+use downpour::trace::frame_scene::LATEST_S;
 use downpour::weather::Weather;
 use downpour::{Computer, PendingFrame, Renderer};
 

@@ -4,7 +4,7 @@ use std::fmt::{self, Write as _};
 
 use downpour::atlas::StreakAtlas;
 use downpour::scene::picture::Pixels;
-use downpour::trace::stage::FrameScene;
+use downpour::trace::frame_scene::FrameScene;
 use downpour::weather::{Loaded, Weather};
 use sha2::{Digest as _, Sha256};
 

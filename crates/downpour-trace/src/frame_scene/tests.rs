@@ -51,8 +51,8 @@ fn loaded(scene: Scene) -> Loaded {
     }
 }
 
-fn stage(weather: &Weather, loaded: &Loaded) -> FrameScene {
-    FrameScene::new(weather, loaded, 0.0).expect("a stage")
+fn frame_scene(weather: &Weather, loaded: &Loaded) -> FrameScene {
+    FrameScene::new(weather, loaded, 0.0).expect("a scene of a frame")
 }
 
 #[test]
@@ -66,7 +66,7 @@ fn the_weather_comes_before_the_scene_and_the_scene_before_a_frame() {
     all.nodes[0].camera = Some(0);
     all.nodes[1].camera = Some(1);
     let (weather, all) = (Weather::default(), loaded(all));
-    let found = stage(&weather, &all);
+    let found = frame_scene(&weather, &all);
     assert_eq!(
         (found.camera.clone(), found.viewpoint.eye),
         (CameraChoice::Scene(1), Vec3::new(0.0, 1.0, 9.0))
@@ -77,14 +77,14 @@ fn the_weather_comes_before_the_scene_and_the_scene_before_a_frame() {
     let mut own = weather.clone();
     own.camera.path = Some(CameraPose { position: DVec3::new(1.0, 2.0, 3.0), forward: DVec3::X }.into());
     own.camera.fov = Some(1.0);
-    let found = stage(&own, &all);
+    let found = frame_scene(&own, &all);
     assert_eq!((found.camera.clone(), found.viewpoint.fov_y), (CameraChoice::Weather, 1.0));
     assert_eq!((found.viewpoint.eye, found.viewpoint.forward), (Vec3::new(1.0, 2.0, 3.0), Vec3::X));
     assert_eq!(
-        stage(&weather, &loaded(scene(vec![node(Some(0), Vec3::ZERO)]))).camera,
+        frame_scene(&weather, &loaded(scene(vec![node(Some(0), Vec3::ZERO)]))).camera,
         CameraChoice::Framing
     );
-    let nothing = stage(&weather, &loaded(Scene::default()));
+    let nothing = frame_scene(&weather, &loaded(Scene::default()));
     assert_eq!((nothing.camera.clone(), nothing.triangles), (CameraChoice::Standing, 0));
     assert_eq!(nothing.viewpoint.eye, Vec3::new(0.0, 1.6, 0.0));
 }
@@ -100,7 +100,7 @@ fn far_away_small_steps_are_kept() {
     let mut weather = Weather::default();
     let position = DVec3::new(far, 0.0, 5.0);
     weather.camera.path = Some(CameraPose { position, forward: DVec3::NEG_Z }.into());
-    let found = stage(&weather, &loaded(all));
+    let found = frame_scene(&weather, &loaded(all));
     assert_eq!(found.origin, position);
     assert_eq!(found.viewpoint.eye, Vec3::ZERO);
     let (low, _) = found.data.bounds();
@@ -125,7 +125,7 @@ fn lamps_and_the_sun_have_the_unit_of_the_sky() {
     let mut all = loaded(all);
     let direction = [0.0, 1.0, 0.0];
     all.sun = Some(Sun { direction, irradiance_rgb: [10.0, 20.0, 30.0], angular_radius: 0.005 });
-    let found = stage(&Weather::default(), &all);
+    let found = frame_scene(&Weather::default(), &all);
     assert_eq!((found.data.light_count, found.lamps), (2, 1));
     // The wetness comes after them.
     let rows = found.data.table[found.data.lights as usize..found.data.wetness as usize].to_vec();
@@ -152,7 +152,7 @@ fn pictures_of_the_same_pixels_are_stored_once() {
             let used = TextureRef { texture: index, uv_set: 0, transform: Affine2::IDENTITY };
             all.materials.push(Material { base_color_texture: Some(used), ..Material::default() });
         }
-        stage(&Weather::default(), &loaded(all)).data.texels.len()
+        frame_scene(&Weather::default(), &loaded(all)).data.texels.len()
     };
     let (srgb, linear) = (Encoding::Srgb, Encoding::Linear);
     let one = texels(&[(picture(7), srgb)]);
@@ -193,29 +193,31 @@ fn exposure_is_of_what_is_lit() {
     let mut weather = Weather::default();
     let lit = vec![[0.5; 4]; 100];
     let half: Vec<[f32; 4]> = lit.iter().copied().chain(vec![[0.0, 0.0, 0.0, 1.0e30]; 100]).collect();
-    let exposure = stage(&weather, &loaded(Scene::default())).exposure(&lit);
+    let exposure = frame_scene(&weather, &loaded(Scene::default())).exposure(&lit);
     assert!((exposure - 0.36).abs() < 1.0e-3, "{exposure}");
-    assert_eq!(stage(&weather, &loaded(Scene::default())).exposure(&half), exposure);
+    assert_eq!(frame_scene(&weather, &loaded(Scene::default())).exposure(&half), exposure);
     weather.camera.exposure_ev = 2.0;
-    assert!((stage(&weather, &loaded(Scene::default())).exposure(&half) / exposure - 4.0).abs() < 1.0e-5);
-    assert_eq!(stage(&Weather::default(), &loaded(Scene::default())).exposure(&[[0.0; 4]; 4]), 1.0);
+    assert!(
+        (frame_scene(&weather, &loaded(Scene::default())).exposure(&half) / exposure - 4.0).abs() < 1.0e-5
+    );
+    assert_eq!(frame_scene(&Weather::default(), &loaded(Scene::default())).exposure(&[[0.0; 4]; 4]), 1.0);
 }
 
-/// A stage that is seen at another time is as wet as one that is made for it, and dry if the weather says so.
+/// A frame's scene that is seen at another time is as wet as one that is made for it, and dry if the weather says so.
 #[test]
 fn wetness_is_that_of_the_time() {
     let mut weather = Weather::default();
     weather.wetness.rained_m = Some(0.0);
     let all = loaded(scene(vec![node(None, Vec3::ZERO)]));
-    let at = |time_s: f64| FrameScene::new(&weather, &all, time_s).expect("a stage").data.table;
-    let first = FrameScene::new(&weather, &all, 0.0).expect("a stage");
+    let at = |time_s: f64| FrameScene::new(&weather, &all, time_s).expect("a scene of a frame").data.table;
+    let first = FrameScene::new(&weather, &all, 0.0).expect("a scene of a frame");
     assert_eq!(first.data.wetness, 0, "nothing has fallen yet");
-    let later = first.seen_at(&weather, &all, 60.0).expect("a stage");
+    let later = first.seen_at(&weather, &all, 60.0).expect("a scene of a frame");
     assert_eq!(later.data.table, at(60.0));
-    let latest = later.seen_at(&weather, &all, 90.0).expect("a stage");
+    let latest = later.seen_at(&weather, &all, 90.0).expect("a scene of a frame");
     assert_eq!(latest.data.table, at(90.0));
     assert_ne!(at(60.0), at(90.0));
-    assert_eq!(latest.seen_at(&weather, &all, 0.0).expect("a stage").data.table, first.data.table);
+    assert_eq!(latest.seen_at(&weather, &all, 0.0).expect("a scene of a frame").data.table, first.data.table);
     weather.wetness.is_enabled = false;
-    assert_eq!(FrameScene::new(&weather, &all, 60.0).expect("a stage").data.wetness, 0);
+    assert_eq!(FrameScene::new(&weather, &all, 60.0).expect("a scene of a frame").data.wetness, 0);
 }
