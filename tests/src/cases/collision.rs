@@ -271,7 +271,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 2.0e-4,
                 "a quotient of depths known to 1e-5; a drop on a surface may be on either side",
             )
-            .with_outliers(1.0e-2),
+            .with_outliers(3.0e-3),
             column,
         ),
         FunctionCase::new(
