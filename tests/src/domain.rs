@@ -22,6 +22,8 @@ pub enum Domain {
     Fixed(f32),
     /// Words made by a function of four random words.
     Made(fn([u32; 4]) -> Vec<u32>),
+    /// Another domain of one word; in every fourth call one of these numbers, where a branch has its edge.
+    Or(&'static Domain, &'static [f32]),
 }
 
 impl Domain {
@@ -54,9 +56,15 @@ impl Domain {
             Self::AnyWord => out.push(match call {
                 0 => 0,
                 1 => u32::MAX,
+                // Single bits, where fields of a word begin and halves of the range meet.
+                2..34 => 1 << ((call + 5 * argument) % 32),
                 _ => random[0],
             }),
-            Self::Below(limit) => out.push(random[0] % limit),
+            Self::Below(limit) => out.push(match end {
+                Some(false) => 0,
+                Some(true) => limit - 1,
+                None => random[0] % limit,
+            }),
             Self::Unit3 => {
                 let axis = call as usize % 6;
                 let v = if call < 64 && call.is_multiple_of(2) {
@@ -73,6 +81,10 @@ impl Domain {
             }
             Self::Fixed(value) => out.push(value.to_bits()),
             Self::Made(make) => out.extend(make(random)),
+            Self::Or(_, values) if random[3].is_multiple_of(4) => {
+                out.push(values[random[2] as usize % values.len()].to_bits());
+            }
+            Self::Or(other, _) => other.words(call, argument, out),
         }
     }
 

@@ -21,6 +21,23 @@ use crate::signature::WordKind;
 use crate::words::IntoWords as _;
 use crate::{FunctionCase, KernelCase, Tol};
 
+/// A light, a view and an axis along it, or one whose part across the view is as small as the limit.
+fn along_the_view([a, b, c, d]: [u32; 4]) -> Vec<u32> {
+    let unit = |z: f32, turn: u32| {
+        let (r, phi) = ((1.0 - z * z).max(0.0).sqrt(), std::f32::consts::TAU * rng_unit(turn));
+        [r * ops::cos(phi), r * ops::sin(phi), z]
+    };
+    let light = unit(2.0 * rng_unit(a) - 1.0, b);
+    let [z, x, y] = unit(if d & 3 == 0 { 0.5 } else { 2.0 * rng_unit(c) - 1.0 }, d);
+    let (view, axis) = match d & 12 {
+        // The square of the part across is ATLAS_TINY, fused or not.
+        0 => ([0.0, 0.0, 1.0], [9.782_369e-5, 2.074_914e-5, 1.0]),
+        4 => ([y, x, z], [-y, -x, -z]),
+        _ => ([y, x, z], [y, x, z]),
+    };
+    [light, view, axis].concat().into_iter().map(f32::to_bits).collect()
+}
+
 /// The cases.
 #[must_use]
 pub(super) fn functions() -> Vec<FunctionCase> {
@@ -37,6 +54,13 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 2.0e-5,
                 "the part of the axis across the view is a difference, a hundredth at times",
             ),
+            |a| atlas_light(a.f32s(), a.f32s(), a.f32s()).words(),
+        ),
+        FunctionCase::new(
+            "atlas_light",
+            &ATLAS,
+            &[Made(along_the_view)],
+            Tol::absolute(2.0e-6, "products and sums of unit vectors, and a root (2.5 ulp)"),
             |a| atlas_light(a.f32s(), a.f32s(), a.f32s()).words(),
         ),
         FunctionCase::new(

@@ -2,18 +2,32 @@
 
 use downpour_bvh::{BvhNode, BvhTriangle, bvh_enter, bvh_inverse, bvh_is_before, bvh_triangle};
 use downpour_math::rng::rng_unit;
-use downpour_shaders::bvh::BVH;
+use downpour_shaders::bvh::{BVH, BVH_EDGE_SLACK};
 
-use crate::Domain::{Made, OneOf, Uniform, Unit3};
-use crate::words::IntoWords as _;
+use crate::Domain::{Fixed, Made, OneOf, Or, Uniform, Unit3};
+use crate::words::{Args, IntoWords as _};
 use crate::{FunctionCase, Tol};
+
+fn met(a: &mut Args<'_>) -> Vec<u32> {
+    let corner = a.f32s();
+    let index = a.f32() as u32;
+    let (edge_1, edge_2) = (a.f32s(), a.f32s());
+    let triangle = BvhTriangle { corner, index, edge_1, padding_1: 0, edge_2, padding_2: 0 };
+    bvh_triangle(&triangle, a.f32s(), a.f32s()).words()
+}
 
 /// The cases.
 pub(super) fn functions() -> Vec<FunctionCase> {
+    let [none, one] = [0.0, 1.0].map(Fixed);
     vec![
-        FunctionCase::new("bvh_inverse", &BVH, &[Unit3], Tol::ulp(3, "a division (2.5 ulp)"), |a| {
-            bvh_inverse(a.f32s()).words()
-        }),
+        FunctionCase::new(
+            "bvh_inverse",
+            &BVH,
+            // A sign is lost where a component counts as 0.
+            &[Or(&Uniform(-1.0, 1.0), &[0.0, -1.0e-20, -1.01e-20, -1.02e-20]); 3],
+            Tol::ulp(3, "a division (2.5 ulp)"),
+            |a| bvh_inverse(a.f32s()).words(),
+        ),
         FunctionCase::new(
             "bvh_enter",
             &BVH,
@@ -83,13 +97,34 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 2.0e-5,
                 "cross products and a division (2.5 ulp); rays on an edge may fall on either side",
             ),
-            |a| {
-                let corner = a.f32s();
-                let index = a.f32() as u32;
-                let (edge_1, edge_2) = (a.f32s(), a.f32s());
-                let triangle = BvhTriangle { corner, index, edge_1, padding_1: 0, edge_2, padding_2: 0 };
-                bvh_triangle(&triangle, a.f32s(), a.f32s()).words()
-            },
+            met,
+        ),
+        // Rays onto the very edges of a triangle, on both sides of the slack, and rays within its plane. All is exact.
+        FunctionCase::new(
+            "bvh_triangle",
+            &BVH,
+            &[
+                [none; 4].as_slice(),
+                &[one, none, none],
+                &[none, one, none],
+                &[
+                    OneOf(&[
+                        -2.0e-6,
+                        -BVH_EDGE_SLACK,
+                        0.0,
+                        0.5,
+                        1.0,
+                        1.0 + 0.5 * BVH_EDGE_SLACK,
+                        1.0 + BVH_EDGE_SLACK,
+                    ]),
+                    OneOf(&[-2.0e-6, -BVH_EDGE_SLACK, 0.0, 0.0, 0.0, 0.5]),
+                    one,
+                ],
+                &[none, none, OneOf(&[-1.0, -1.0, -1.0, 0.0])],
+            ]
+            .concat(),
+            Tol::exact("products with 0 and 1"),
+            met,
         ),
     ]
 }

@@ -17,7 +17,7 @@ use downpour_sim::collision::{
 use downpour_sim::gpu::collision::GpuCollisionMap;
 use glam::{Quat, Vec2, Vec3};
 
-use crate::Domain::{Below, Made, Uniform, Unit3};
+use crate::Domain::{Below, Fixed, Made, OneOf, Uniform, Unit3};
 use crate::compare::{Cpu, Gpu as FromGpu, POISON};
 use crate::function::Run;
 use crate::signature::WordKind::{Float, Integer};
@@ -109,6 +109,28 @@ fn texel(args: &mut Args<'_>) -> CollisionTexel {
     CollisionTexel { depths: args.f32s(), surfaces: args.u32s() }
 }
 
+/// The words of a map, a texel, and a piece of a path that begins within 2 mm of one of the texel's surfaces.
+fn close_words(random: [u32; 4]) -> Vec<u32> {
+    let texel_random = [random[0] - random[0] % 5 + 1 + random[0] % 4, random[1], random[2], random[3]];
+    let words = [map_words(random), texel_words(texel_random)].concat();
+    let mut args = Args::new(&words);
+    let (map, texel) = (map(&mut args), texel(&mut args));
+    let ([a, b, c, d], [e, f, ..]) = (more(random, 8), more(random, 9));
+    let start = [a - 0.5, b - 0.5];
+    let layer = random[3] as usize % (1 + random[0] as usize % 4);
+    let depth = collision_depths(&map, &texel, Vec2::from(start))[layer];
+    let before = [0, 1, COLLISION_START, COLLISION_START][random[2] as usize % 4];
+    let piece = ((start, depth + 4.0e-3 * c - 2.0e-3), ([d - 0.5, e - 0.5], depth + 2.0 * f - 1.0));
+    [words, piece.words(), vec![before]].concat()
+}
+
+fn column(a: &mut Args<'_>) -> Vec<u32> {
+    let (map, texel) = (map(a), texel(a));
+    let (start, end) = (vec3(a), vec3(a));
+    let met = collision_column(&map, &texel, &CollisionPiece { start, end, before: a.u32() });
+    ((met.kind, met.fraction), [met.layer, met.beneath, met.count]).words()
+}
+
 fn triangle(args: &mut Args<'_>) -> BvhTriangle {
     let (corner, index) = (args.f32s(), args.u32());
     BvhTriangle { corner, index, edge_1: args.f32s(), padding_1: 0, edge_2: args.f32s(), padding_2: 0 }
@@ -118,6 +140,10 @@ fn triangle(args: &mut Args<'_>) -> BvhTriangle {
 pub(super) fn functions() -> Vec<FunctionCase> {
     let (a_map, a_texel) = (Made(map_words), Made(texel_words));
     let a_surface = Made(|r| vec![surface_word(r)]);
+    let steep = Made(|r| {
+        let [a, b, ..] = r.map(rng_unit);
+        vec![collision_pack(Vec3::new(a - 0.5, b - 0.5, 0.0), r[3] & 1 == 1)]
+    });
     let a_triangle = Made(|r| {
         let [corner, edge_1, edge_2] =
             [0, 1, 2].map(|k| more(r, k).map(|x| (x - 0.5).to_bits())[..3].to_vec());
@@ -176,6 +202,21 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             Tol::relative(1.0e-5, 1.0e-5, "as collision_square, divided by 0.15 or more"),
             |a| collision_slope(a.u32()).to_array().words(),
         ),
+        // Surfaces that are steep to the last digit.
+        FunctionCase::new(
+            "collision_square",
+            &COLLISION,
+            &[steep],
+            Tol::absolute(1.0e-6, "unpacking is known to 1 ulp of 1, and the third is a difference of them"),
+            |a| collision_square(a.u32()).to_array().words(),
+        ),
+        FunctionCase::new(
+            "collision_slope",
+            &COLLISION,
+            &[steep],
+            Tol::relative(1.0e-5, 1.0e-3, "what is unpacked (1 ulp), over the least that counts"),
+            |a| collision_slope(a.u32()).to_array().words(),
+        ),
         FunctionCase::new(
             "collision_depths",
             &COLLISION,
@@ -219,12 +260,19 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 "a quotient of depths known to 1e-5; a drop on a surface may be on either side",
             )
             .with_outliers(5.0e-4),
-            |a| {
-                let (map, texel) = (map(a), texel(a));
-                let (start, end) = (vec3(a), vec3(a));
-                let met = collision_column(&map, &texel, &CollisionPiece { start, end, before: a.u32() });
-                ((met.kind, met.fraction), [met.layer, met.beneath, met.count]).words()
-            },
+            column,
+        ),
+        // Drops that begin within millimeters of a surface.
+        FunctionCase::new(
+            "collision_column",
+            &COLLISION,
+            &[Made(close_words)],
+            Tol::absolute(
+                2.0e-4,
+                "a quotient of depths known to 1e-5; a drop on a surface may be on either side",
+            )
+            .with_outliers(3.0e-3),
+            column,
         ),
         FunctionCase::new(
             "collision_turn",
@@ -246,6 +294,19 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &[a_triangle, Unit3],
             Tol::exact("a sign; of a triangle that is seen from its edge it may be either")
                 .with_outliers(1.0e-3),
+            |a| collision_map_faces(&triangle(a), vec3(a)).words(),
+        ),
+        // Along the triangle, exactly, and across it.
+        FunctionCase::new(
+            "collision_map_faces",
+            &COLLISION_MAP,
+            &[
+                [Fixed(0.0); 3].as_slice(),
+                &[Below(9), Fixed(1.0), Fixed(0.0), Fixed(0.0), Fixed(0.0), Fixed(1.0), Fixed(0.0)],
+                &[OneOf(&[-1.0, 0.0, 1.0]); 3],
+            ]
+            .concat(),
+            Tol::exact("a sign of numbers that are exact"),
             |a| collision_map_faces(&triangle(a), vec3(a)).words(),
         ),
         FunctionCase::new(

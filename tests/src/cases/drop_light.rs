@@ -23,7 +23,7 @@ use downpour_trace::sky_light::SkyLight;
 use glam::{Vec2, Vec3};
 
 use super::scene::scene;
-use crate::Domain::{Made, Uniform, Unit3};
+use crate::Domain::{Fixed, Made, OneOf, Uniform, Unit3};
 use crate::compare::{Cpu, Gpu as FromGpu};
 use crate::function::Run;
 use crate::signature::WordKind;
@@ -56,9 +56,16 @@ pub(super) fn functions() -> Vec<FunctionCase> {
     let case =
         |function, domains: &[_], tol, cpu| FunctionCase::new(function, &DROP_GLINT, domains, tol, cpu);
     let root = Tol::absolute(2.0e-6, "products of unit vectors, a square root and a division (2.5 ulp)");
-    let position = Uniform(-1.0, 1.0);
+    let [none, one] = [0.0, 1.0].map(Fixed);
     vec![
         case("drop_glint_right", &[Unit3], root, |a| drop_glint_right(vec3(a)).to_array().words()),
+        // So close to plumb that the square is DROP_GLINT_AXIS, fused or not.
+        case(
+            "drop_glint_right",
+            &[OneOf(&[0.0, 5.020_692e-7, 1.0e-3]), one, OneOf(&[0.0, 8.648_274e-7, 1.0e-3])],
+            root,
+            |a| drop_glint_right(vec3(a)).to_array().words(),
+        ),
         case(
             "drop_glint_angle",
             &[Made(apart)],
@@ -72,9 +79,20 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 .with_outliers(2.0e-3),
             |a| drop_glint_side(vec3(a), vec3(a), vec3(a)).to_array().words(),
         ),
+        // A lamp behind the drop or so close to there that the square is DROP_GLINT_AXIS, fused or not.
+        case(
+            "drop_glint_side",
+            &[
+                OneOf(&[0.0, 5.020_692e-7, 1.0e-3]),
+                OneOf(&[0.0, 8.648_274e-7, 1.0e-3]),
+                none, one, none, none, none, one, none,
+            ],
+            Tol::absolute(1.0e-6, "a root and a division (2.5 ulp each)"),
+            |a| drop_glint_side(vec3(a), vec3(a), vec3(a)).to_array().words(),
+        ),
         case(
             "drop_glint_pack",
-            &[position, position, Uniform(-0.1, 1.1)],
+            &[Uniform(-1.2, 1.2), Uniform(-1.2, 1.2), Uniform(-0.1, 1.1)],
             Tol::exact("whole numbers as bits; at a border a fused product or a square root (2.5 ulp) may give the next")
                 .with_outliers(2.0e-3),
             |a| drop_glint_pack(Vec2::from(a.f32s()), a.f32()).words(),

@@ -113,11 +113,32 @@ fn blade(args: &mut Args<'_>) -> GlassBlade {
     GlassBlade { before, after, pivot, reach, turn: turn as i32, leaves, film, unused }
 }
 
+/// The words of a blade that begins or ends its tick along +x, and of a cell on that line or beside it.
+fn beside_blade(random: [u32; 4]) -> Vec<u32> {
+    let [which, x, y, away] = rng_draw([random[0], random[1]], random[2], random[3], 3);
+    let mut words = blade_words(random);
+    let (straight, other) = if which & 1 == 0 { (0, 2) } else { (2, 0) };
+    words[straight..straight + 2].copy_from_slice(&[16_384, 0]);
+    words[other..other + 2].copy_from_slice(&[16_376, within(away, 512)]);
+    // Odd, so that centers of cells are on the line.
+    words[5] = 2 * (y % 2000) + 1;
+    words.extend([x % 4096, y % 2000 + (which >> 1) % 3]);
+    words
+}
+
 /// The words of a frame of 8 to 4103 cells along each edge; limits of the rain that fall.
 fn frame_words(random: [u32; 4]) -> Vec<u32> {
     let mut words = vec![8 + random[0] % 4096, 8 + random[1] % 4096];
     words.extend([0; 22]);
     words.extend((0..8).map(|k| random[2] >> (3 * k)));
+    words
+}
+
+/// The words of a frame, and a word of chance that often is one of its limits.
+fn landing(random: [u32; 4]) -> Vec<u32> {
+    let mut words = frame_words(random);
+    let limit = words[24 + (random[0] % 8) as usize];
+    words.push(if random[1] & 1 == 0 { random[3] } else { limit });
     words
 }
 
@@ -192,6 +213,14 @@ fn motions() -> Vec<FunctionCase> {
             INTEGERS,
             |a| words(glass_motion_slide(ivec2(a), ivec2(a), a.u32(), a.u32())),
         ),
+        // Faster than a number of 16 bits holds, with little friction and much viscosity.
+        FunctionCase::new(
+            "glass_motion_slide",
+            m,
+            &[Made(|r| vec![within(r[0], 25_000), within(r[1], 25_000)]), Made(drive), Below(3), Below(8192)],
+            INTEGERS,
+            |a| words(glass_motion_slide(ivec2(a), ivec2(a), a.u32(), a.u32())),
+        ),
         FunctionCase::new(
             "glass_motion_weight",
             m,
@@ -203,6 +232,14 @@ fn motions() -> Vec<FunctionCase> {
             "glass_motion_choose",
             m,
             &[Below(3000), Below(3000), Below(16_385), AnyWord],
+            INTEGERS,
+            |a| glass_motion_choose(UVec3::from(a.u32s()), a.u32()).words(),
+        ),
+        // So few that all may be 0, or their sum 1.
+        FunctionCase::new(
+            "glass_motion_choose",
+            m,
+            &[Below(2), Below(2), Below(2), AnyWord],
             INTEGERS,
             |a| glass_motion_choose(UVec3::from(a.u32s()), a.u32()).words(),
         ),
@@ -231,6 +268,9 @@ fn positions() -> Vec<FunctionCase> {
         FunctionCase::new("glass_blade_sweeps", &shaders::BLADE, &[blade_of, Made(cell)], INTEGERS, |a| {
             glass_blade_sweeps(&blade(a), ivec2(a)).words()
         }),
+        FunctionCase::new("glass_blade_sweeps", &shaders::BLADE, &[Made(beside_blade)], INTEGERS, |a| {
+            glass_blade_sweeps(&blade(a), ivec2(a)).words()
+        }),
         FunctionCase::new(
             "glass_blade_push",
             &shaders::BLADE,
@@ -253,7 +293,7 @@ fn positions() -> Vec<FunctionCase> {
         FunctionCase::new("glass_frame_holds", &shaders::FRAME, &[frame_of, at], INTEGERS, |a| {
             glass_frame_holds(&frame(a), ivec2(a)).words()
         }),
-        FunctionCase::new("glass_frame_landing", &shaders::FRAME, &[frame_of, AnyWord], INTEGERS, |a| {
+        FunctionCase::new("glass_frame_landing", &shaders::FRAME, &[Made(landing)], INTEGERS, |a| {
             glass_frame_landing(&frame(a), a.u32()).words()
         }),
     ]
@@ -283,6 +323,14 @@ fn ridges() -> Vec<FunctionCase> {
         FunctionCase::new("glass_ridge_flow", m, &[Made(mass), down, Below(8192)], INTEGERS, |a| {
             glass_ridge_flow(a.u32(), a.u32() as i32, a.u32()).words()
         }),
+        // As much water as counts, and so little drain that the limit of the fall does not hide it.
+        FunctionCase::new(
+            "glass_ridge_flow",
+            m,
+            &[Made(|r| vec![65_000 + r[0] % 2000]), down, Below(3)],
+            INTEGERS,
+            |a| glass_ridge_flow(a.u32(), a.u32() as i32, a.u32()).words(),
+        ),
         FunctionCase::new("glass_ridge_key", m, &[ahead], INTEGERS, |a| glass_ridge_key(ivec2(a)).words()),
         FunctionCase::new("glass_ridge_ahead", m, &[AnyWord], INTEGERS, |a| {
             words(glass_ridge_ahead(a.u32()))

@@ -17,7 +17,10 @@ use downpour_scene::scene::Scene;
 use downpour_scene::sky::{SkyMap, Sun};
 use downpour_shaders::Kernel;
 use downpour_shaders::common::PYRAMID_KERNEL;
-use downpour_shaders::render::glass::{BLADE, GLASS_PICTURE, GLASS_PICTURE_KERNEL, LIGHT, WATER};
+use downpour_shaders::render::glass::{
+    BLADE, GLASS_PICTURE, GLASS_PICTURE_ARM, GLASS_PICTURE_HOLDER, GLASS_PICTURE_KERNEL, GLASS_PICTURE_LIP,
+    LIGHT, WATER,
+};
 use downpour_shaders::render::rain::COMPOSE_KERNEL;
 use downpour_trace::data::RenderFrame;
 use downpour_trace::frame_scene::FrameScene;
@@ -25,7 +28,7 @@ use downpour_trace::scene::SceneView;
 use downpour_weather::{Loaded, Weather};
 use glam::{Vec2, Vec3};
 
-use crate::Domain::{Fixed, Made, Uniform};
+use crate::Domain::{Fixed, Made, OneOf, Uniform};
 use crate::compare::{Cpu, Gpu as FromGpu};
 use crate::function::Run;
 use crate::kept::kept;
@@ -99,9 +102,44 @@ fn wiper(random: [u32; 4]) -> Vec<u32> {
     words.into_iter().map(f32::to_bits).collect()
 }
 
+/// A wiper in a direction, and a position within some millimeters of an end of its blade or its arm, as words.
+fn near_end(random: [u32; 4]) -> Vec<u32> {
+    let mut words = wiper(random);
+    let [pivot_x, pivot_y] = [words[0], words[1]].map(f32::from_bits);
+    let [a, b, c, ..] = rng_draw([random[0], random[1]], 1, 0, 0);
+    let end = [0.0, 0.05, 0.175, 0.3][(a % 4) as usize];
+    let (along, aside) = (end + 0.012 * (rng_unit(b) - 0.5), 0.018 * (rng_unit(c) - 0.5));
+    let direction = [0.6, -0.8];
+    let position = [
+        pivot_x + along * direction[0] - aside * direction[1],
+        pivot_y + along * direction[1] + aside * direction[0],
+    ];
+    words.extend([direction, position].concat().into_iter().map(f32::to_bits));
+    words
+}
+
+fn part(a: &mut Args<'_>) -> Vec<u32> {
+    let blade = bytemuck::cast::<[f32; 24], GlassPictureBlade>(a.f32s());
+    let (direction, position) = (Vec2::from(a.f32s()), Vec2::from(a.f32s()));
+    glass_picture_blade_part(&blade, direction, position).to_array().words()
+}
+
+/// A drop at the origin that moves along +x, as words.
+fn drop_along_x(random: [u32; 4]) -> Vec<u32> {
+    let mut words = drop(random);
+    words[..2].copy_from_slice(&[0; 2]);
+    words[4..6].copy_from_slice(&[1.0f32, 0.0].map(f32::to_bits));
+    words[8..10].copy_from_slice(&[0.0f32, 1.0].map(f32::to_bits));
+    words[10..12].copy_from_slice(&[0; 2]);
+    words
+}
+
 fn read(a: &mut Args<'_>) -> GlassPictureDrop {
     bytemuck::cast::<[f32; 16], GlassPictureDrop>(a.f32s())
 }
+
+const PART: Tol =
+    Tol::relative(1.0e-4, 1.0e-5, "quotients (2.5 ulp) of differences of lengths of a meter by millimeters");
 
 const CAP: Tol = Tol::relative(
     2.0e-5,
@@ -117,6 +155,14 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             "glass_picture_water_cap",
             &WATER,
             &[Made(drop), position[0], position[1]],
+            CAP.with_outliers(2.0e-3),
+            |a| glass_picture_water_cap(&read(a), Vec2::from(a.f32s())).to_array().words(),
+        ),
+        // Straight aside of its middle, where the tail begins.
+        FunctionCase::new(
+            "glass_picture_water_cap",
+            &WATER,
+            &[Made(drop_along_x), Fixed(0.0), Uniform(-1.5e-3, 1.5e-3)],
             CAP.with_outliers(2.0e-3),
             |a| glass_picture_water_cap(&read(a), Vec2::from(a.f32s())).to_array().words(),
         ),
@@ -155,28 +201,47 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "glass_picture_blade_at",
             &BLADE,
-            &[Made(wiper), Uniform(0.0, 1.0)],
+            &[Made(wiper), Uniform(-0.2, 1.2)],
             Tol::relative(1.0e-5, 1.0e-6, "a root and a division (2.5 ulp each) of sums of length about 1"),
             |a| {
                 let blade = bytemuck::cast::<[f32; 24], GlassPictureBlade>(a.f32s());
                 glass_picture_blade_at(&blade, a.f32()).to_array().words()
             },
         ),
+        // Close to the ends of the blade and of the arm.
+        FunctionCase::new("glass_picture_blade_part", &BLADE, &[Made(near_end)], PART, part),
+        // The very outlines of a blade along +x, of which all numbers are exact.
+        FunctionCase::new(
+            "glass_picture_blade_part",
+            &BLADE,
+            &[
+                [Fixed(0.0); 2].as_slice(),
+                &[Fixed(0.25), Fixed(0.5)],
+                &[Fixed(0.0); 20],
+                &[Fixed(1.0), Fixed(0.0)],
+                &[
+                    OneOf(&[-0.001, 0.0, 0.1, 0.25, 0.2505, 0.375, 0.5, 0.503]),
+                    OneOf(&[
+                        0.0,
+                        0.001,
+                        GLASS_PICTURE_LIP,
+                        0.005,
+                        GLASS_PICTURE_HOLDER,
+                        -GLASS_PICTURE_ARM,
+                        0.02,
+                    ]),
+                ],
+            ]
+            .concat(),
+            PART,
+            part,
+        ),
         FunctionCase::new(
             "glass_picture_blade_part",
             &BLADE,
             &[Made(wiper), Fixed(0.6), Fixed(-0.8), Uniform(0.2, 0.4), Uniform(0.1, 0.4)],
-            Tol::relative(
-                1.0e-4,
-                1.0e-5,
-                "quotients (2.5 ulp) of differences of lengths of a meter by millimeters",
-            )
-            .with_outliers(2.0e-3),
-            |a| {
-                let blade = bytemuck::cast::<[f32; 24], GlassPictureBlade>(a.f32s());
-                let (direction, position) = (Vec2::from(a.f32s()), Vec2::from(a.f32s()));
-                glass_picture_blade_part(&blade, direction, position).to_array().words()
-            },
+            PART.with_outliers(2.0e-3),
+            part,
         ),
         FunctionCase::new(
             "glass_picture_light_lobe",

@@ -43,6 +43,30 @@ fn traced_words(random: [u32; 4]) -> Vec<u32> {
     words
 }
 
+/// The same for pixels of 0.3.
+fn coarse_words(random: [u32; 4]) -> Vec<u32> {
+    let mut words = traced_words(random);
+    let pixel = words.len() - 2;
+    words[pixel] = 0.3f32.to_bits();
+    words
+}
+
+/// The same from the side.
+fn level_words(random: [u32; 4]) -> Vec<u32> {
+    let mut words = traced_words(random);
+    let up = words.len() - 8;
+    words[up..up + 3].copy_from_slice(&[0.0f32, 1.0, 0.0].map(f32::to_bits));
+    words
+}
+
+/// The same of a drop that refracts more than anything that is clear.
+fn dense_words(random: [u32; 4]) -> Vec<u32> {
+    let mut words = traced_words(random);
+    let index = words.len() - 5;
+    words[index] = 6.0f32.to_bits();
+    words
+}
+
 /// The same words as the twin takes them, and the width of a pixel.
 fn traced(args: &mut Args<'_>) -> (TracedDrop, f32) {
     let coefficients = args.f32s::<12>();
@@ -64,6 +88,13 @@ fn traced(args: &mut Args<'_>) -> (TracedDrop, f32) {
 fn exit_words(exit: &Exit<f32>) -> Vec<u32> {
     let at = ((exit.point, exit.reflections), (exit.normal, exit.lost));
     (at, (exit.inside, exit.outside)).words()
+}
+
+fn through(a: &mut Args<'_>) -> Vec<u32> {
+    let (drop, _) = traced(a);
+    let t = mask_trace_through(&drop, a.f32(), a.f32());
+    let outer = ((t.direction, t.transmittance), (t.reflected, t.reflectance));
+    ((outer, (t.internal, t.internal_transmittance)), t.reflections).words()
 }
 
 const SURFACE: Tol = Tol::relative(
@@ -109,6 +140,14 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &mask::TRACE,
             &[Uniform(-0.9, 0.4), Uniform(0.7, 1.6), Uniform(0.6, 1.1), OneOf(&[-1.0, 1.0])],
             Tol::relative(1.0e-5, 1.0e-5, "a square root of a discriminant and a division (2.5 ulp)"),
+            |a| mask_trace_step(a.f32(), a.f32(), a.f32(), a.f32()).words(),
+        ),
+        // Lines that graze: the two roots are close together, or there is none.
+        FunctionCase::new(
+            "mask_trace_step",
+            &mask::TRACE,
+            &[Uniform(0.3, 1.2), Uniform(-0.9, 0.9), Uniform(0.6, 1.1), OneOf(&[-1.0, 1.0])],
+            Tol::absolute(2.0e-3, "a square root of a difference that is known to 4e-7"),
             |a| mask_trace_step(a.f32(), a.f32(), a.f32(), a.f32()).words(),
         ),
         FunctionCase::new(
@@ -174,12 +213,25 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 "two refractions and a reflection; errors grow close to total reflection and with each one",
             )
             .with_outliers(1.0e-4),
-            |a| {
-                let (drop, _) = traced(a);
-                let t = mask_trace_through(&drop, a.f32(), a.f32());
-                let outer = ((t.direction, t.transmittance), (t.reflected, t.reflectance));
-                ((outer, (t.internal, t.internal_transmittance)), t.reflections).words()
-            },
+            through,
+        ),
+        // Wider rays, of which a part is polarized, in a drop seen from the side.
+        FunctionCase::new(
+            "mask_trace_through",
+            &mask::TRACE,
+            &[Made(level_words), Uniform(-0.8, 0.8), Uniform(-0.3, 0.3)],
+            Tol::absolute(1.0e-5, "two refractions and a reflection far from total reflection")
+                .with_outliers(1.0e-2),
+            through,
+        ),
+        // So strong a refraction that some light does not find out.
+        FunctionCase::new(
+            "mask_trace_through",
+            &mask::TRACE,
+            &[Made(dense_words), inside, inside],
+            Tol::absolute(2.0e-3, "errors grow close to total reflection and with each one")
+                .with_outliers(5.0e-3),
+            through,
         ),
         FunctionCase::new(
             "mask_silhouette_estimate",
@@ -223,6 +275,19 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &mask::SILHOUETTE,
             &[drop, near, near],
             Tol::absolute(2.0e-3, "the distance to the outline (1e-5) in units of a pixel of 0.02"),
+            |a| {
+                let (drop, pixel) = traced(a);
+                let (x, y) = (a.f32(), a.f32());
+                let cut = mask_silhouette_cut(&drop, pixel, x, y);
+                ((cut.sample, cut.coverage), cut.traced).words()
+            },
+        ),
+        // Pixels of a third of a drop, where the margins of the thresholds and the sample's place in a pixel count.
+        FunctionCase::new(
+            "mask_silhouette_cut",
+            &mask::SILHOUETTE,
+            &[Made(coarse_words), near, near],
+            Tol::absolute(2.0e-4, "the distance to the outline (1e-5) in units of a pixel of 0.3"),
             |a| {
                 let (drop, pixel) = traced(a);
                 let (x, y) = (a.f32(), a.f32());

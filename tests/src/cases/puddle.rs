@@ -12,11 +12,11 @@ use downpour_lattice::puddle::{
 };
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_shaders::lattice::puddle::{
-    DIRECT_KERNEL, NORMAL_KERNEL, PUDDLE, PUDDLE_NORMAL, PUDDLE_SEED, PUDDLE_STATE, PUDDLE_STEP, SEED_KERNEL,
-    STEP_KERNEL,
+    DIRECT_KERNEL, NORMAL_KERNEL, PUDDLE, PUDDLE_MIN, PUDDLE_NORMAL, PUDDLE_SEED, PUDDLE_STATE, PUDDLE_STEP,
+    SEED_KERNEL, STEP_KERNEL,
 };
 
-use crate::Domain::{AnyWord, Below, Made, OneOf, Uniform};
+use crate::Domain::{AnyWord, Below, Fixed, Made, OneOf, Uniform};
 use crate::compare::{Cpu, Gpu as FromGpu};
 use crate::function::Run;
 use crate::signature::WordKind;
@@ -62,12 +62,16 @@ fn row(args: &mut Args<'_>) -> [PuddleQuad; 3] {
 
 const SUM: Tol = Tol::absolute(4.0e-6, "sums and products of numbers up to 40; a GPU may fuse them");
 
+/// Numbers of each kind; one of the NaNs has its last bit set.
+const FINITE_OR_NOT: [f32; 5] = [1.0, f32::NAN, f32::from_bits(0x7fc0_0001), f32::INFINITY, f32::MAX];
+
 /// The cases.
 pub(super) fn functions() -> Vec<FunctionCase> {
     let value = Uniform(-1.0, 1.0);
     let quads = |n: usize| -> Vec<Domain> { vec![value; 4 * n] };
     let with = |n: usize, more: &[Domain]| -> Vec<Domain> { [quads(n), more.to_vec()].concat() };
     let (fraction, cells) = (Uniform(0.0, 1.0), Uniform(0.0, 40.0));
+    let at_reach = [20.5, 20.5, 0.1, 1.0, 0.5, 10.0].map(Fixed);
     vec![
         FunctionCase::new(
             "puddle_linked",
@@ -129,6 +133,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 -3.5e-3,
                 1.0e-19,
                 -1.0e-19,
+                PUDDLE_MIN,
                 9.0e-21,
                 -9.0e-21,
                 f32::MAX,
@@ -142,7 +147,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "puddle_is_finite",
             &PUDDLE,
-            &[OneOf(&[1.0, f32::NAN, f32::INFINITY, f32::MAX]); 4],
+            &[OneOf(&FINITE_OR_NOT); 4],
             Tol::exact("bits are compared, nothing is computed"),
             |a| quad(a).map(downpour_math::ops::ops_is_finite).words(),
         ),
@@ -153,6 +158,17 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 // Of every size that a half has, and some that it has not.
                 let scale = f32::from_bits((100 + random[1] % 46) << 23);
                 vec![(scale * (2.0 * rng_unit(random[0]) - 1.0)).to_bits()]
+            })],
+            Tol::exact("rounding is done with integers"),
+            |a| puddle_state_half(a.f32()).words(),
+        ),
+        // Numbers halfway between two halves, and their neighbors on either side.
+        FunctionCase::new(
+            "puddle_state_half",
+            &PUDDLE_STATE,
+            &[Made(|random| {
+                let half = (113 + random[1] % 29) << 23 | (random[0] % 1024) << 13 | random[3] & 0x8000_0000;
+                vec![half + 0xfff + random[2] % 3]
             })],
             Tol::exact("rounding is done with integers"),
             |a| puddle_state_half(a.f32()).words(),
@@ -210,6 +226,23 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &PUDDLE_SEED,
             &[Made(seed_words), Uniform(0.0, 64.0), Uniform(0.0, 64.0)],
             Tol::absolute(2.0e-5, "as the shape, of a distance known to 1e-5 lengths").with_outliers(1.0e-4),
+            |a| puddle_seed_height(&seed(a), a.f32s()).words(),
+        ),
+        // Cells whose distance from the center is the reach of the seed, exactly.
+        FunctionCase::new(
+            "puddle_seed_height",
+            &PUDDLE_SEED,
+            &[
+                at_reach.as_slice(),
+                &[
+                    Below(2),
+                    Below(1),
+                    OneOf(&[10.0, 12.0, 14.0, 20.0, 26.0, 30.0]),
+                    OneOf(&[20.0, 26.0, 28.0]),
+                ],
+            ]
+            .concat(),
+            Tol::absolute(2.0e-5, "as the shape, of a distance known to 1e-5 lengths"),
             |a| puddle_seed_height(&seed(a), a.f32s()).words(),
         ),
         FunctionCase::new(

@@ -391,6 +391,12 @@ fn cell(random: [u32; 4]) -> Vec<u32> {
     vec![random[1] % count, count]
 }
 
+/// The first or the last cell, and the number of cells, from 3 to 96.
+fn end_cell(random: [u32; 4]) -> Vec<u32> {
+    let count = 3 + random[0] % 94;
+    vec![if random[1] & 1 == 0 { 0 } else { count - 1 }, count]
+}
+
 /// Weights of the light at the beginning and at the end of a way, 0 to 2.
 fn weights(random: [u32; 4]) -> Vec<u32> {
     random[..2].iter().map(|&word| (2.0 * rng_unit(word)).to_bits()).collect()
@@ -442,6 +448,25 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 Uniform(0.0, 500.0),
             ],
             Tol::relative(1.0e-4, 1.0e-6, "exponentials, and their difference from 1 from 0.02 on (5e-5)"),
+            |a| medium_fog_depth(Vec4::from_array(a.f32s()), a.f32(), a.f32()).words(),
+        ),
+        // Almost level rays about the height 0, where the series serves.
+        FunctionCase::new(
+            "medium_fog_depth",
+            &MEDIUM,
+            &[
+                Uniform(0.0, 0.1),
+                Uniform(0.0, 0.5),
+                Uniform(-0.02, 0.02),
+                Uniform(0.0, 1.0),
+                Uniform(-0.001, 0.001),
+                Uniform(0.0, 20.0),
+            ],
+            Tol::relative(
+                3.0e-6,
+                1.0e-9,
+                "a quotient of a difference, and sums of products of what is near 1",
+            ),
             |a| medium_fog_depth(Vec4::from_array(a.f32s()), a.f32(), a.f32()).words(),
         ),
         FunctionCase::new(
@@ -500,6 +525,22 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &STREAK_CELL,
             &[Made(cell)],
             Tol::absolute(1.2e-3, "the square of a cosine (2^-11)"),
+            |a| streak_cell_weight(a.u32(), a.u32()).words(),
+        ),
+        // The first and the last, which need no cosine.
+        FunctionCase::new(
+            "streak_cell_weight",
+            &STREAK_CELL,
+            &[Made(end_cell)],
+            Tol::relative(1.0e-6, 0.0, "a quotient (2.5 ulp), and products that a GPU may fuse"),
+            |a| streak_cell_weight(a.u32(), a.u32()).words(),
+        ),
+        // So few that they are as wide as the angle whose square is their weight.
+        FunctionCase::new(
+            "streak_cell_weight",
+            &STREAK_CELL,
+            &[Made(|r| [[1, 3], [1, 4], [2, 5]][r[0] as usize % 3].to_vec())],
+            Tol::absolute(8.0e-4, "the square of a cosine (2^-11), times 0.8 at most"),
             |a| streak_cell_weight(a.u32(), a.u32()).words(),
         ),
     ]

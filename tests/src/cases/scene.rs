@@ -30,7 +30,7 @@ use downpour_trace::skylight::{skylight_film, skylight_hat, skylight_lobe};
 use downpour_trace::texture::texture_wrap;
 use glam::{Affine3A, Vec3};
 
-use crate::Domain::{AnyWord, Below, Made, Uniform, Unit3};
+use crate::Domain::{AnyWord, Below, Fixed, Made, OneOf, Uniform, Unit3};
 use crate::compare::{Cpu, Gpu as FromGpu};
 use crate::function::Run;
 use crate::signature::WordKind;
@@ -117,6 +117,18 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 brdf_visible_normal(view, a.f32(), a.f32(), a.f32()).to_array().words()
             },
         ),
+        // A view along the normal, whose axes are the surface's own.
+        FunctionCase::new(
+            "brdf_visible_normal",
+            &BRDF,
+            &[Fixed(0.0), Fixed(0.0), Fixed(1.0), alpha, fraction, fraction],
+            Tol::absolute(3.0e-3, "sine and cosine (2^-11 within pi, and unspecified reduction beyond)")
+                .with_outliers(1.0e-3),
+            |a| {
+                let view = vec3(a);
+                brdf_visible_normal(view, a.f32(), a.f32(), a.f32()).to_array().words()
+            },
+        ),
         FunctionCase::new(
             "brdf_visible_density",
             &BRDF,
@@ -136,6 +148,23 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 Unit3,
             ],
             Tol::relative(1.0e-4, 1.0e-4, "a height that cancels at the horizon").with_outliers(1.0e-3),
+            |a| emitter_weight(vec3(a), a.f32(), a.f32(), vec3(a)).words(),
+        ),
+        // Points in the horizon, above it and below it, exactly.
+        FunctionCase::new(
+            "emitter_weight",
+            &EMITTER,
+            &[
+                Uniform(-5.0, 5.0),
+                OneOf(&[0.0, 1.0, -1.0]),
+                Uniform(-5.0, 5.0),
+                Fixed(0.0),
+                Uniform(0.0, 9.0),
+                Fixed(0.0),
+                Fixed(1.0),
+                Fixed(0.0),
+            ],
+            Tol::relative(1.0e-5, 1.0e-6, "roots and quotients (2.5 ulp)"),
             |a| emitter_weight(vec3(a), a.f32(), a.f32(), vec3(a)).words(),
         ),
         FunctionCase::new("emitter_color", &EMITTER, &[AnyWord], FORMULA, |a| {

@@ -5,7 +5,8 @@ use std::cmp::Ordering;
 use downpour_bvh::Bvh;
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_gpu::{Gpu, GpuError};
-use downpour_math::rng::rng_unit;
+use downpour_math::ops;
+use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_shaders::sim::enter::{ENTER, ENTER_KERNEL};
 use downpour_shaders::sim::step::{MOTION, STEP, STEP_KERNEL, VOLUME, VOLUME_BALL};
 use downpour_sim::collision::{CollisionMap, CollisionOptions};
@@ -32,7 +33,7 @@ use downpour_wind::{
 };
 use glam::{DVec3, Vec2, Vec3};
 
-use crate::Domain::{AnyWord, Below, Made, Uniform, Unit3};
+use crate::Domain::{AnyWord, Below, Made, Or, Uniform, Unit3};
 use crate::compare::{Cpu, Gpu as FromGpu};
 use crate::function::Run;
 use crate::signature::WordKind;
@@ -57,6 +58,29 @@ fn eye_words(random: [u32; 4]) -> Vec<u32> {
     words.push(0);
     words.extend(forward.to_array().words());
     words.push(0);
+    words
+}
+
+/// The words of a wide camera, and of a position and a range: the position is close to the sphere, or exactly on an edge of the area.
+fn edge_words(random: [u32; 4]) -> Vec<u32> {
+    let mut words = eye_words(random);
+    let [a, b, c, d] = rng_draw([random[0], random[1]], random[2], random[3], 7).map(rng_unit);
+    let (half_width, half_height, range) = (4.0, 3.0, 2.0 + 7.0 * d);
+    words[3] = f32::to_bits(half_width);
+    words[7] = f32::to_bits(half_height);
+    let radius = 0.5 * range;
+    let local = match random[0] % 8 {
+        0 => [0.05 * radius * half_width, 0.01 * a, 0.05 * radius],
+        1 => [0.01 * a, -0.05 * radius * half_height, 0.05 * radius],
+        2 => [0.0, 0.0, range],
+        _ => {
+            let (z, phi) = (1.2 * a - 0.4, std::f32::consts::TAU * b);
+            let near = radius * (0.99 + 0.02 * c);
+            let across = near * (1.0 - z * z).sqrt();
+            [across * ops::cos(phi), across * ops::sin(phi), radius + near * z]
+        }
+    };
+    words.extend([local[0], local[1], local[2], range].map(f32::to_bits));
     words
 }
 
@@ -119,6 +143,14 @@ fn region_words(random: [u32; 4]) -> Vec<u32> {
     words
 }
 
+/// The words of a region before a plane, as wide as a twentieth of the way along the tangent.
+fn wedge_words([a, b, c, d]: [u32; 4]) -> Vec<u32> {
+    let mut words = region_words([a, b, c, d - d % 3 + 1]);
+    words[6] = 0;
+    words[8..10].copy_from_slice(&[0.05f32, 0.0].map(f32::to_bits));
+    words
+}
+
 fn region(args: &mut Args<'_>) -> EnterRegion {
     let [face, bin, first, first_of_bin] = args.u32s();
     EnterRegion {
@@ -166,7 +198,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "motion_table_speed",
             &MOTION,
-            &[Uniform(0.0, 9.0), Uniform(0.0, 9.0), diameter],
+            &[Uniform(0.0, 9.0), Uniform(0.0, 9.0), Or(&Uniform(1.0e-4, 9.0e-3), &[0.0])],
             Tol::absolute(3.0e-3, "the share is the difference of numbers up to 1000, times speeds up to 9"),
             |a| motion_table_speed(a.f32(), a.f32(), a.f32()).words(),
         ),
@@ -228,6 +260,34 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             Tol::exact("a choice by comparisons of products that a GPU may fuse").with_outliers(1.0e-3),
             |a| volume_limit(&frustum(a), vec3(a), a.f32(), a.f32()).words(),
         ),
+        // No plane, only the ball, for long waits.
+        FunctionCase::new(
+            "volume_limit",
+            &VOLUME,
+            &[
+                Made(|r| {
+                    let mut words = frustum_words(r);
+                    words[..20].fill(0);
+                    words[25] = 0.1f32.to_bits();
+                    words
+                }),
+                near,
+                near,
+                near,
+                diameter,
+                Uniform(0.3, 9.5),
+            ],
+            Tol::exact("a choice by comparisons of products that a GPU may fuse").with_outliers(1.0e-3),
+            |a| volume_limit(&frustum(a), vec3(a), a.f32(), a.f32()).words(),
+        ),
+        // On the edges of the area.
+        FunctionCase::new(
+            "volume_in_area",
+            &VOLUME,
+            &[Made(edge_words)],
+            Tol::exact("a choice by comparisons of products that a GPU may fuse").with_outliers(1.0e-3),
+            |a| volume_in_area(&eye(a), vec3(a), a.f32()).words(),
+        ),
         FunctionCase::new(
             "volume_in_area",
             &VOLUME,
@@ -278,6 +338,14 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             Tol::exact("a product and sums, which a GPU may fuse, and their whole part").with_outliers(2.0e-2),
             |a| enter_code(a.f32(), a.f32(), a.f32()).words(),
         ),
+        // So small that hardly any is beside a half.
+        FunctionCase::new(
+            "enter_code",
+            &ENTER,
+            &[Uniform(0.0, 1000.0), Uniform(0.0, 1000.0), fraction],
+            Tol::exact("a product and sums, which a GPU may fuse, and their whole part").with_outliers(1.0e-3),
+            |a| enter_code(a.f32(), a.f32(), a.f32()).words(),
+        ),
         FunctionCase::new(
             "enter_chance",
             &ENTER,
@@ -293,6 +361,31 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 .with_outliers(1.0e-3),
             |a| enter_offset(&region(a), vec3(a), vec3(a), vec3(a), a.f32()).to_array().words(),
         ),
+        // Onto the ball only, whose disk has an edge.
+        FunctionCase::new(
+            "enter_offset",
+            &ENTER,
+            &[
+                Made(|[a, b, c, d]| region_words([a, b, c, d - d % 3])),
+                Unit3,
+                Unit3,
+                fraction,
+                fraction,
+                fraction,
+                fraction,
+            ],
+            Tol::absolute(2.0e-5, "roots and products of numbers up to 3; at the edge of the disk or by chance it may be none")
+                .with_outliers(1.0e-4),
+            |a| enter_offset(&region(a), vec3(a), vec3(a), vec3(a), a.f32()).to_array().words(),
+        ),
+        // A wedge that begins at its point.
+        FunctionCase::new(
+            "enter_offset",
+            &ENTER,
+            &[Made(wedge_words), Unit3, Unit3, fraction, fraction, fraction, fraction],
+            Tol::absolute(2.0e-5, "roots, a quotient and products of numbers up to 3"),
+            |a| enter_offset(&region(a), vec3(a), vec3(a), vec3(a), a.f32()).to_array().words(),
+        ),
         FunctionCase::new(
             "step_shown",
             &STEP,
@@ -306,6 +399,14 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &[diameter],
             Tol::exact("three products and a sum, which a GPU may fuse, and their whole part")
                 .with_outliers(5.0e-2),
+            |a| step_measure(a.f32()).words(),
+        ),
+        // So small that hardly any is beside a half.
+        FunctionCase::new(
+            "step_measure",
+            &STEP,
+            &[Uniform(1.0e-5, 5.0e-4)],
+            Tol::exact("three products and a sum, which a GPU may fuse, and their whole part").with_outliers(1.0e-3),
             |a| step_measure(a.f32()).words(),
         ),
     ]

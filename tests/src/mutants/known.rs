@@ -2,21 +2,21 @@
 
 use super::population::Mutant;
 
-/// A mutant that may survive.
+/// Mutants of one function that may survive for the same reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Known {
     /// The function.
     pub function: String,
-    /// The changed line, as [`Mutant::wrong`] has it.
-    pub wrong: String,
-    /// Reason why nothing sees it.
+    /// The changed lines, as [`Mutant::wrong`] has them.
+    pub wrong: Vec<String>,
+    /// Reason why nothing sees them.
     pub reason: String,
 }
 
-/// The list. A paragraph has the function, the changed line and the reason, a line each; `#` begins a remark.
+/// The list. A paragraph has the function, the changed lines and the reason, a line each; `#` begins a remark.
 ///
 /// # Panics
-/// If a paragraph has another number of lines.
+/// If a paragraph has fewer than three lines.
 #[must_use]
 pub fn known() -> Vec<Known> {
     let text = include_str!("../../mutants.txt");
@@ -25,9 +25,11 @@ pub fn known() -> Vec<Known> {
     };
     let paragraphs = text.split("\n\n").map(lines).filter(|lines| !lines.is_empty());
     paragraphs
-        .map(|lines| match <[String; 3]>::try_from(lines) {
-            Ok([function, wrong, reason]) => Known { function, wrong, reason },
-            Err(lines) => panic!("tests/mutants.txt: three lines are wanted, not {lines:?}"),
+        .map(|lines| match lines.as_slice() {
+            [function, wrong @ .., reason] if !wrong.is_empty() => {
+                Known { function: function.clone(), wrong: wrong.to_vec(), reason: reason.clone() }
+            }
+            _ => panic!("tests/mutants.txt: at least three lines are wanted, not {lines:?}"),
         })
         .collect()
 }
@@ -35,7 +37,7 @@ pub fn known() -> Vec<Known> {
 /// The reason why a mutant may survive, if it is listed.
 #[must_use]
 pub fn reason<'a>(list: &'a [Known], mutant: &Mutant) -> Option<&'a str> {
-    let found = list.iter().find(|k| k.function == mutant.swap.function && k.wrong == mutant.wrong);
+    let found = list.iter().find(|k| k.function == mutant.swap.function && k.wrong.contains(&mutant.wrong));
     found.map(|known| known.reason.as_str())
 }
 
@@ -48,8 +50,10 @@ mod tests {
     fn the_list_names_mutants_that_exist() {
         let all = population();
         for known in known() {
-            let exists = all.iter().any(|m| m.swap.function == known.function && m.wrong == known.wrong);
-            assert!(exists, "{}: no mutant gives \"{}\"", known.function, known.wrong);
+            for wrong in &known.wrong {
+                let exists = all.iter().any(|m| m.swap.function == known.function && m.wrong == *wrong);
+                assert!(exists, "{}: no mutant gives \"{wrong}\"", known.function);
+            }
             assert!(known.reason.len() > 20, "{}: a reason is a sentence", known.function);
         }
     }

@@ -10,7 +10,7 @@ use downpour_drop::fall_speed::{
 use downpour_math::rng::rng_unit;
 use downpour_shaders::drop::fall_speed::FALL_SPEED;
 
-use crate::Domain::{Below, LogUniform, Made, Uniform};
+use crate::Domain::{Below, LogUniform, Made, Or, Uniform};
 use crate::words::{Args, IntoWords as _};
 use crate::{FunctionCase, Tol};
 
@@ -27,7 +27,7 @@ fn air(args: &mut Args<'_>) -> FallSpeedAir {
 }
 
 const BEARD: Tol = Tol::relative(2.0e-5, 1.0e-6, "exp and ln of numbers up to 12 (3 + 2|x| ulp)");
-const TABLE: Tol = Tol::relative(2.0e-6, 1.0e-6, "one interpolation; a GPU may fuse its products");
+const TABLE: Tol = Tol::relative(2.0e-6, 1.0e-15, "one interpolation; a GPU may fuse its products");
 const FIT: Tol =
     Tol::absolute(1.0e-5, "an exp or a polynomial of terms up to 40, whose sum is a speed up to 10");
 
@@ -35,8 +35,12 @@ pub(super) fn functions() -> Vec<FunctionCase> {
     let case =
         |function, domains: &[_], tol, cpu| FunctionCase::new(function, &FALL_SPEED, domains, tol, cpu);
     let (d, air_made) = (LogUniform(5.0e-6, 9.0e-3), Made(air_words));
+    // None, and the first nodes of the tables.
+    let at_nodes = Or(&LogUniform(5.0e-6, 9.0e-3), &[0.0, 1.0e-8, 7.8e-5, 2.0e-4]);
+    // The ends of the first two regimes.
+    let at_regimes = Or(&LogUniform(5.0e-6, 9.0e-3), &[1.9e-5, 1.07e-3]);
     vec![
-        case("fall_speed_beard_1976", &[d, air_made], BEARD, |a| {
+        case("fall_speed_beard_1976", &[at_regimes, air_made], BEARD, |a| {
             fall_speed_beard_1976(a.f32(), air(a)).words()
         }),
         case("fall_speed_beard_sphere", &[Uniform(0.019, 1.07), air_made], BEARD, |a| {
@@ -45,10 +49,10 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         case("fall_speed_beard_flattened", &[Uniform(1.07, 7.0), air_made], BEARD, |a| {
             fall_speed_beard_flattened(a.f32(), air(a)).words()
         }),
-        case("fall_speed_gunn_kinzer_1949", &[d, air_made], TABLE, |a| {
+        case("fall_speed_gunn_kinzer_1949", &[at_nodes, air_made], TABLE, |a| {
             fall_speed_gunn_kinzer_1949(a.f32(), air(a)).words()
         }),
-        case("fall_speed_rousseau_2006", &[d, air_made], TABLE, |a| {
+        case("fall_speed_rousseau_2006", &[at_nodes, air_made], TABLE, |a| {
             fall_speed_rousseau_2006(a.f32(), air(a)).words()
         }),
         case("fall_speed_atlas_1973", &[d, air_made], FIT, |a| {

@@ -9,7 +9,7 @@ use downpour_math::rng::rng_unit;
 use downpour_math::vector::{dot, normalize, scale};
 use downpour_shaders::drop::optics::OPTICS;
 
-use crate::Domain::{Made, Uniform, Unit3};
+use crate::Domain::{Made, OneOf, Or, Uniform, Unit3};
 use crate::words::IntoWords as _;
 use crate::{FunctionCase, Tol};
 
@@ -69,6 +69,13 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         case("optics_fresnel_polarized", &[Made(interface)], FRESNEL, |a| {
             optics_fresnel_polarized(a.f32(), a.f32()).words()
         }),
+        // A ray along a boundary that is none: the square is 0, and nothing is reflected.
+        case(
+            "optics_fresnel_polarized",
+            &[Or(&Uniform(0.0, 1.0), &[0.0]), OneOf(&[1.0, 1.5])],
+            FRESNEL,
+            |a| optics_fresnel_polarized(a.f32(), a.f32()).words(),
+        ),
         case("optics_fresnel", &[Made(interface)], FRESNEL, |a| optics_fresnel(a.f32(), a.f32()).words()),
         case("optics_fresnel_schlick", &[cosine, index], FORMULA, |a| {
             optics_fresnel_schlick(a.f32(), a.f32()).words()

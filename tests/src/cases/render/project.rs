@@ -20,13 +20,13 @@ use downpour_render::rain::{
 use downpour_shaders::Kernel;
 use downpour_shaders::render::rain::{
     PROFILES, PROFILES_CLEAR_KERNEL, PROFILES_FINISH_KERNEL, PROFILES_LEVELS, PROFILES_MEASURE_KERNEL,
-    PROFILES_PLACE_KERNEL, PROJECT, PROJECT_KERNEL,
+    PROFILES_PLACE_KERNEL, PROJECT, PROJECT_KERNEL, PROJECT_NARROW, PROJECT_SMALL, PROJECT_THIN,
 };
 use downpour_shaders::sim::field::FIELD_SPLASH;
 use downpour_sim::field::EyeDrop;
 use glam::Vec3;
 
-use crate::Domain::{Below, Made, OneOf, Uniform};
+use crate::Domain::{Below, Made, OneOf, Or, Uniform};
 use crate::compare::{Cpu, Gpu as FromGpu};
 use crate::function::Run;
 use crate::signature::WordKind;
@@ -47,11 +47,14 @@ fn streak_words(random: [u32; 4]) -> Vec<u32> {
     let drop = ScreenDrop {
         area: 600.0 * a * a * a,
         along: [0.3 * b, 2.0 * c * c],
+        slope: 0.2 * b * c,
+        half_extent: 1.1,
+        depth_ratio: 0.7 + 0.6 * a,
         mode_phase: [if random[0].is_multiple_of(3) { 0.0 } else { 0.1 }, 0.0, 0.2, 0.4],
         cycles: [4.0 * d, 9.0 * d],
-        reach: if random[1].is_multiple_of(5) { -1.0 } else { 2.0 },
+        reach: [-1.0, 0.0, 0.005, 2.0, 2.0][random[1] as usize % 5],
         kind: random[2] % 3,
-        grid: [0, 5, 8][random[3] as usize % 3],
+        grid: [0, 1, 5, 8][random[3] as usize % 4],
         ..ScreenDrop::default()
     };
     bytemuck::cast::<ScreenDrop, [u32; WORDS]>(drop).to_vec()
@@ -65,7 +68,7 @@ fn sizes(random: [u32; 4]) -> Vec<u32> {
 }
 
 fn rows(random: [u32; 4]) -> Vec<u32> {
-    vec![2 + random[0] % 128]
+    vec![1 + random[0] % 128]
 }
 
 /// A drop of the words.
@@ -77,6 +80,7 @@ fn drop(words: [u32; WORDS]) -> ScreenDrop {
 #[must_use]
 pub(super) fn functions() -> Vec<FunctionCase> {
     let exact = Tol::exact("integers and comparisons");
+    let widths = Or(&Uniform(0.0, 20.0), &[PROJECT_SMALL, PROJECT_THIN, 2.0, PROJECT_NARROW, 16.0]);
     let flag = |name, twin| FunctionCase::new(name, &PROFILES, &[Made(streak_words)], exact, twin);
     vec![
         FunctionCase::new(
@@ -107,7 +111,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             exact,
             |a| project_class(a.f32()).words(),
         ),
-        FunctionCase::new("project_grid", &PROJECT, &[Uniform(0.0, 20.0), Below(2)], exact, |a| {
+        FunctionCase::new("project_grid", &PROJECT, &[widths, Below(2)], exact, |a| {
             project_grid(a.f32(), a.u32() == 1).words()
         }),
         FunctionCase::new("profiles_rows_of", &PROFILES, &[Made(rows)], exact, |a| {

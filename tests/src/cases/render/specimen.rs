@@ -16,7 +16,7 @@ use downpour_specimen::trace::{
 };
 use downpour_specimen::{Image, Sky, SpecimenLamp, SpecimenOptions, render_specimen, specimen_jitter};
 
-use crate::Domain::{AnyWord, Made, OneOf, Uniform, Unit3};
+use crate::Domain::{AnyWord, Made, OneOf, Or, Uniform, Unit3};
 use crate::compare::{Cpu, Gpu as FromGpu};
 use crate::function::Run;
 use crate::signature::WordKind;
@@ -66,6 +66,16 @@ pub(super) fn ray_of(random: [u32; 4], farthest: f32) -> SpecimenRay<f32> {
 fn drop_and_ray(random: [u32; 4], farthest: f32) -> Vec<u32> {
     let ray = ray_of(random, farthest);
     [drop_words(random[2] ^ random[1]), ((ray.foot, ray.reach), ray.direction).words()].concat()
+}
+
+fn drop_and_graze(random: [u32; 4]) -> Vec<u32> {
+    let ray = ray_of(random, 1.0);
+    let unit = |k: u32| rng_unit(random[0].rotate_left(k) ^ random[1]);
+    let wanted = 0.8 + 0.3 * unit(5);
+    let length = dot(ray.foot, ray.foot).sqrt().max(1.0e-3);
+    let foot = add_scaled(scale(ray.foot, wanted / length), ray.direction, 2.0 * unit(9) - 1.0);
+    let reach = if random[2] & 1 == 0 { 100.0 } else { 4.0 * unit(13) - 2.0 };
+    [drop_words(random[2] ^ random[1]), ((foot, reach), ray.direction).words()].concat()
 }
 
 fn drop_and_light(random: [u32; 4]) -> Vec<u32> {
@@ -181,6 +191,14 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             Tol::exact("a boolean: a ray that grazes the drop may fall on either side").with_outliers(1.0e-3),
             |a| specimen_hits(&drop(a), &ray(a)).words(),
         ),
+        // Rays about the rim, whose feet are not where they come nearest, and cameras beside or behind the drop.
+        FunctionCase::new(
+            "specimen_hits",
+            module,
+            &[Made(drop_and_graze)],
+            Tol::exact("a boolean: a ray that grazes the drop may fall on either side").with_outliers(1.0e-3),
+            |a| specimen_hits(&drop(a), &ray(a)).words(),
+        ),
         FunctionCase::new(
             "specimen_split_outside",
             module,
@@ -223,7 +241,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "specimen_turns",
             module,
-            &[Uniform(-1.0, 1.0), Uniform(-1.0, 1.0)],
+            &[Or(&Uniform(-1.0, 1.0), &[0.0]), Uniform(-1.0, 1.0)],
             Tol::absolute(2.0e-7, "a division (2.5 ulp) and a polynomial that a GPU may fuse"),
             |a| specimen_turns(a.f32(), a.f32()).words(),
         ),

@@ -42,6 +42,11 @@ fn streak_words(random: u32) -> Vec<u32> {
     bytemuck::cast_slice(bytemuck::bytes_of(&uniform)).to_vec()
 }
 
+/// The word of `SpecimenStreak` that says how wide the spheroid around the drop is.
+const INVERSE_WIDE: usize = 13;
+/// The word of `SpecimenStreak` that says how far the drop moves during the exposure.
+const FARTHEST: usize = 16;
+
 /// The numbers of a motion as a shader has them.
 struct Taken {
     oscillation: DropOscillation,
@@ -113,6 +118,38 @@ fn wobble_and_part(random: [u32; 4]) -> Vec<u32> {
     [words, ((ray.foot, ray.direction), (near, far)).words()].concat()
 }
 
+/// A drop, a line through it, and an interval several times as long as the drop.
+fn wobble_and_long(random: [u32; 4]) -> Vec<u32> {
+    let ray = ray_of(random, 0.9);
+    let [a, b] = [9, 21].map(|k| 2.0 + 6.0 * rng_unit(random[0].rotate_left(k) ^ random[3]));
+    [wobble_words(random[2] ^ random[1]), ((ray.foot, ray.direction), (-a, b)).words()].concat()
+}
+
+/// The same for a shape that oscillates too strongly for a drop.
+fn hollow_and_long(random: [u32; 4]) -> Vec<u32> {
+    let mut words = wobble_and_long(random);
+    let [a, b, c] = [3, 11, 27].map(|k| rng_unit(random[1].rotate_left(k) ^ random[3]));
+    words[12..15].copy_from_slice(&[0.8 * a - 0.4, 0.4 * b - 0.2, 0.9].map(f32::to_bits));
+    let interval = words.len() - 2;
+    words[interval..].copy_from_slice(&[-1.5 - c, 1.5 + a].map(f32::to_bits));
+    words
+}
+
+/// A drop, a line from a point inside it, and how far it is followed.
+fn wobble_from_inside(random: [u32; 4]) -> Vec<u32> {
+    let ray = ray_of(random, INSIDE - 0.1);
+    let [a, b] = [9, 21].map(|k| rng_unit(random[0].rotate_left(k) ^ random[3]));
+    [wobble_words(random[2] ^ random[1]), ((ray.foot, ray.direction), (0.2 * a - 0.1, 2.0 + 6.0 * b)).words()]
+        .concat()
+}
+
+fn cross(a: &mut Args<'_>) -> Vec<u32> {
+    let (drop, origin, direction) = (wobble(a), a.f32s(), a.f32s());
+    let [start, end, side] = a.f32s();
+    let s = specimen_wobble_cross(&drop, origin, direction, start, end, side);
+    s.map_or([end, 0.0], |s| [s, 1.0]).words()
+}
+
 /// Closer to the origin than any point of the surface: 0.42 radii, in a drop of 6 mm that is pressed flat.
 const INSIDE: f32 = 0.35;
 
@@ -134,6 +171,30 @@ fn wobble_and_light(random: [u32; 4]) -> Vec<u32> {
 /// A motion and a ray whose foot is up to eight radii away: most meet the path, few do so at all times.
 fn streak_and_ray(random: [u32; 4]) -> Vec<u32> {
     [streak_words(random[2] ^ random[1]), ray_words(&ray_of(random, 8.0))].concat()
+}
+
+/// A drop that hardly moves during the exposure or not at all, and a ray close to it, or a level one at the rim of its spheroid.
+fn still_and_ray(random: [u32; 4]) -> Vec<u32> {
+    let mut words = streak_words(random[2] ^ random[1]);
+    words[FARTHEST] = if random[0] & 1 == 0 { 0 } else { 0.005f32.to_bits() };
+    let mut ray = ray_of(random, 1.5);
+    if random[0] & 6 == 0 {
+        let [x, z] = [ray.direction[0], ray.direction[2]];
+        let level = 1.0 / (x * x + z * z).sqrt();
+        let wide = f32::from_bits(words[INVERSE_WIDE]);
+        let aside = level * ((1.0 - 0.02 * rng_unit(random[1])) / wide).sqrt();
+        ray.foot = [-z * aside, 0.02 * rng_unit(random[3]) - 0.01, x * aside];
+        ray.direction = [x * level, 0.0, z * level];
+    }
+    [words, ray_words(&ray)].concat()
+}
+
+/// As `SpecimenStreak`, with damping and with larger factors of the volume than a drop has.
+fn damped_words(random: [u32; 4]) -> Vec<u32> {
+    let mut words = streak_words(random[0]);
+    words[2..4].copy_from_slice(&[30.0f32, 20.0].map(f32::to_bits));
+    words[8..13].copy_from_slice(&[0.5f32, 1.0, 4.0, 1.5, 2.0].map(f32::to_bits));
+    words
 }
 
 fn passage_words(passage: &SpecimenPassage<f32>) -> Vec<u32> {
@@ -158,6 +219,8 @@ const MEETS: Tol = Tol::absolute(
     "a point of the surface, known to 1e-6; a ray that grazes the drop may fall on either side of it",
 )
 .with_outliers(2.0e-3);
+const MEETS_LONG: Tol =
+    Tol::absolute(6.0e-6, "the same; so few rays graze that more would be a fault").with_outliers(2.0e-4);
 const NEXT: Tol = Tol::absolute(
     1.0e-4,
     "the same for the next interface; refraction multiplies the errors close to the critical angle",
@@ -212,12 +275,31 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             wobbles,
             &[Made(wobble_and_part), Fixed(-1.0)],
             MEETS,
-            |a| {
-                let (drop, origin, direction) = (wobble(a), a.f32s(), a.f32s());
-                let [start, end, side] = a.f32s();
-                let s = specimen_wobble_cross(&drop, origin, direction, start, end, side);
-                s.map_or([end, 0.0], |s| [s, 1.0]).words()
-            },
+            cross,
+        ),
+        // Intervals several times as long as the drop: it may be within a part of them, and is found by where G turns.
+        FunctionCase::new(
+            "specimen_wobble_cross",
+            wobbles,
+            &[Made(wobble_and_long), Fixed(-1.0)],
+            MEETS_LONG,
+            cross,
+        ),
+        // Shapes with hollows, which no drop has: a line meets some of them twice.
+        FunctionCase::new(
+            "specimen_wobble_cross",
+            wobbles,
+            &[Made(hollow_and_long), Fixed(-1.0)],
+            MEETS_LONG,
+            cross,
+        ),
+        // From inside the drop to far outside.
+        FunctionCase::new(
+            "specimen_wobble_cross",
+            wobbles,
+            &[Made(wobble_from_inside), Fixed(1.0)],
+            MEETS_LONG,
+            cross,
         ),
         FunctionCase::new("specimen_wobble_meet", wobbles, &[Made(|r| wobble_and_ray(r, 1.3))], MEETS, |a| {
             let (drop, ray) = (wobble(a), ray(a));
@@ -242,6 +324,10 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new("specimen_streak_passage", streaks, &[Made(streak_and_ray)], PASSAGE, |a| {
             passage_words(&specimen_streak_passage(&streak(a).motion, &ray(a)))
         }),
+        // A drop at rest: the ray meets it all the time or never.
+        FunctionCase::new("specimen_streak_passage", streaks, &[Made(still_and_ray)], PASSAGE, |a| {
+            passage_words(&specimen_streak_passage(&streak(a).motion, &ray(a)))
+        }),
         FunctionCase::new(
             "specimen_streak_shift",
             streaks,
@@ -259,6 +345,16 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             "specimen_streak_state",
             streaks,
             &[Made(|r| streak_words(r[0])), Uniform(-0.01, 0.01)],
+            Tol::absolute(2.0e-4, "WGSL's sine is within 2^-11 of an amplitude of 0.3"),
+            |a| {
+                let taken = streak(a);
+                specimen_streak_state(taken.oscillation, taken.volume, a.f32()).words()
+            },
+        ),
+        FunctionCase::new(
+            "specimen_streak_state",
+            streaks,
+            &[Made(damped_words), Uniform(-0.01, 0.01)],
             Tol::absolute(2.0e-4, "WGSL's sine is within 2^-11 of an amplitude of 0.3"),
             |a| {
                 let taken = streak(a);

@@ -13,7 +13,7 @@ use downpour_shaders::render::tone::{TONE, TONE_KERNEL, TONE_START};
 use glam::Vec3;
 
 use crate::compare::{Cpu, Gpu as FromGpu};
-use crate::domain::Domain::{Below, LogUniform, Uniform};
+use crate::domain::Domain::{Below, LogUniform, Made, Uniform};
 use crate::function::Run;
 use crate::signature::WordKind;
 use crate::words::IntoWords as _;
@@ -144,11 +144,29 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             Tol::absolute(3.0e-4, "the colors above"),
             |a| tone_hue(a.f32s::<3>().into()).to_array().words(),
         ),
+        // Grays.
+        FunctionCase::new(
+            "tone_hue",
+            &TONE,
+            &[Made(|r| {
+                vec![(r[0] % 4000 * (r[1] % 16)) as f32 * 1.0e-3; 3].into_iter().map(f32::to_bits).collect()
+            })],
+            Tol::absolute(1.0e-6, "the neutral curve"),
+            |a| tone_hue(a.f32s::<3>().into()).to_array().words(),
+        ),
         FunctionCase::new(
             "tone_srgb",
             &TONE,
             &[Uniform(-0.1, 1.1)],
             Tol::exact("integers, but where a power ends beside a half").with_outliers(2.0e-3),
+            |a| u32::from(tone_srgb(a.f32())).words(),
+        ),
+        // The straight part of the curve.
+        FunctionCase::new(
+            "tone_srgb",
+            &TONE,
+            &[Uniform(0.0, 0.005)],
+            Tol::exact("integers, but where a product ends beside a half").with_outliers(2.0e-3),
             |a| u32::from(tone_srgb(a.f32())).words(),
         ),
         FunctionCase::new(
