@@ -69,6 +69,7 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
         sim::enter::MODULES,
         sim::field::MODULES,
         sim::splash::MODULES,
+        sim::bounce::MODULES,
         sim::step::MODULES,
         wind::MODULES,
     ]
@@ -99,6 +100,7 @@ pub fn kernels() -> impl Iterator<Item = &'static Kernel> {
         sim::enter::KERNELS,
         sim::field::KERNELS,
         sim::splash::KERNELS,
+        sim::bounce::KERNELS,
         sim::step::KERNELS,
         wind::KERNELS,
     ]

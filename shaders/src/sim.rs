@@ -1,5 +1,6 @@
 //! `wgsl/sim`: positions and motion of drops. The Rust twins are in `downpour-sim`.
 
+pub mod bounce;
 pub mod collision;
 pub mod enter;
 pub mod field;

@@ -1,6 +1,7 @@
 //! The registry of cases, a file per subsystem.
 
 mod atlas;
+mod bounce;
 mod bvh;
 mod collision;
 mod common;
@@ -28,6 +29,7 @@ use crate::{FunctionCase, KernelCase};
 pub fn functions() -> Vec<FunctionCase> {
     [
         atlas::functions(),
+        bounce::functions(),
         bvh::functions(),
         collision::functions(),
         common::functions(),
@@ -57,6 +59,7 @@ pub fn functions() -> Vec<FunctionCase> {
 pub fn kernels() -> Vec<KernelCase> {
     [
         atlas::kernels(),
+        bounce::kernels(),
         collision::kernels(),
         common::kernels(),
         drop_light::kernels(),

@@ -35,6 +35,7 @@ use downpour_sim::collision::{CollisionFrame, CollisionTexel};
 use downpour_sim::enter::EnterRegion;
 use downpour_sim::field::EyeDrop;
 use downpour_sim::field::frame::{FieldClass, FieldFrame, ShelterFrame};
+use downpour_sim::impacts::bounce_frame::{BounceFrame, BounceParts};
 use downpour_sim::impacts::splash_frame::SplashFrame;
 use downpour_sim::step::{StepEvent, StepFrame};
 use downpour_sim::volume::{VolumeEye, VolumeFrustum};
@@ -112,6 +113,10 @@ fn hosts() -> Vec<Host> {
             is_before, classes, columns, room, pane, first, begins, kept_row, radius),
         host!(SplashFrame as "SplashFrame" in &sim::splash::SPLASH,
             sides, pane, eye, half_time, now, strength, radius, per_radius, farthest, drops, first, room),
+        host!(BounceFrame as "BounceFrame" in &sim::bounce::BOUNCE,
+            sides, pane, air, eye, half_shutter, velocity, nearest, turning, farthest, per_diameter, lowest, highest,
+            first_time, slices, longest, chance, restitution, grip, size, model, slack, parts, first, room, unused),
+        host!(BounceParts as "BounceParts" in &sim::bounce::BOUNCE, count, drops),
         host!(ShelterFrame as "ShelterFrame" in &sim::field::SHELTER,
             eye, half_shutter, low, since_cut, high, cuts, room, first, unused_1, unused_2),
         host!(ProjectFrame as "ProjectFrame" in &render::rain::PROJECT,

@@ -11,7 +11,7 @@ use downpour_tests::signature::all_functions;
 use downpour_tests::sources::rust_files;
 
 /// WGSL functions whose work a Rust function of another name does, and where. Kernel-level cases compare the results.
-const ELSEWHERE: [(&[&str], &str); 10] = [
+const ELSEWHERE: [(&[&str], &str); 12] = [
     (
         &[
             "puddle_is_finite",
@@ -38,7 +38,15 @@ const ELSEWHERE: [(&[&str], &str); 10] = [
         &["field_beyond", "field_carried", "field_chain", "field_meets", "field_product", "field_shows"],
         "the CPU computes in f64 and in wide integers, in the world (downpour_sim::field, drift and view)",
     ),
-    (&["shelter_carried"], "downpour_sim::drift"),
+    (&["bounce_row", "shelter_carried"], "downpour_sim::drift"),
+    (
+        &["bounce_find_chain", "bounce_find_parts"],
+        "the CPU looks where surfaces are, in the world (downpour_sim::impacts and places)",
+    ),
+    (
+        &["bounce_hit_part", "bounce_listed", "bounce_outside", "bounce_shows"],
+        "the CPU lists droplets in f64, in the world (the loop of RainField::bounced, FallingDrop::beyond, View::shows)",
+    ),
     (&["bvh_hit"], "downpour_bvh::bvh_nearest returns an option in place of a distance below 0"),
     (&["enter_find", "enter_region"], "downpour_sim::region has the boxes as values, the GPU as rows"),
     (&["mask_model_sample"], "part of mask_model_texel in downpour_mask::model"),

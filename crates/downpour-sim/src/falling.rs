@@ -1,7 +1,7 @@
 //! Drops in the form that a picture needs.
 
 use downpour_math::ops;
-use downpour_shaders::sim::field::FIELD_SPLASH;
+use downpour_shaders::sim::field::{FIELD_BOUNCED, FIELD_SPLASH};
 use glam::{DVec3, Vec3};
 
 use crate::resolved::Resolved;
@@ -75,7 +75,7 @@ impl FallingDrop {
             (EyeDrop::new(self, view.eye), view.velocity.as_vec3(), view.turning.as_vec3());
         let [open, close] = [-half_time, half_time]
             .map(|time| drop.eye_drop_position(velocity, turning, time).dot(outward) - distance);
-        let [begin, end] = field_outside(open, close, half_time).map(forever);
+        let [begin, end] = eye_drop_outside(open, close, half_time).map(forever);
         let mut kept = *self;
         kept.present_s = [self.present_s[0].max(begin), self.present_s[1].min(end)];
         kept.position += (Vec3::from(self.velocity) * (kept.seen_s() - self.seen_s())).as_dvec3();
@@ -105,7 +105,7 @@ pub struct EyeDrop {
     pub id: u32,
     /// Part of the exposure in which it exists, s from the picture's time.
     pub present: [f32; 2],
-    /// Terminal speed, m/s; 0 if it is not known, `FIELD_SPLASH` for a splash.
+    /// Terminal speed, m/s; `FIELD_BOUNCED` if it is not known or for a droplet that rebounded, `FIELD_SPLASH` for a splash.
     pub speed: f32,
     /// Lower half of its id.
     pub id_low: u32,
@@ -122,7 +122,7 @@ impl EyeDrop {
             velocity: drop.velocity,
             id: drop.id as u32 ^ (drop.id >> 32) as u32,
             present: drop.present_s.map(|time| time.clamp(-ALWAYS_S, ALWAYS_S)),
-            speed: if drop.kind == DropKind::Splash { FIELD_SPLASH } else { 0.0 },
+            speed: if drop.kind == DropKind::Splash { FIELD_SPLASH } else { FIELD_BOUNCED },
             id_low: drop.id as u32,
         }
     }
@@ -153,9 +153,9 @@ impl EyeDrop {
 
 /// Part of the exposure, s from its middle, in which a drop is beyond a pane, from its distances beyond it at the begin and
 /// the end, m; the first time is above the last if it never is. Twin of the function of this name in
-/// `shaders/wgsl/sim/field.wgsl`.
+/// `shaders/wgsl/sim/eye_drop.wgsl`.
 #[must_use]
-pub fn field_outside(begin: f32, end: f32, half_time: f32) -> [f32; 2] {
+pub fn eye_drop_outside(begin: f32, end: f32, half_time: f32) -> [f32; 2] {
     let mut part = [-ALWAYS_S, ALWAYS_S];
     if begin < 0.0 && end < 0.0 {
         return [ALWAYS_S, -ALWAYS_S];

@@ -34,8 +34,9 @@ mod room;
 #[doc(hidden)]
 pub mod thinning;
 
+use downpour_drop::air::Air;
 use downpour_drop::distribution::{DropSizeDistribution, SampledBy};
-use downpour_drop::fall_speed::TerminalSpeed;
+use downpour_drop::fall_speed::{FallSpeedModel, TerminalSpeed};
 use downpour_math::rng::{rng_draw, rng_pcg4d, seed_words};
 use downpour_math::{OutOfRange, in_range};
 use downpour_shaders::sim::field::{
@@ -57,7 +58,7 @@ use crate::drift::Drift;
 pub use crate::drift::drift_position;
 pub use crate::falling::{DropKind, EyeDrop, FallingDrop, VisibleDrops};
 #[doc(hidden)]
-pub use crate::falling::{eye_drop_turned, field_outside};
+pub use crate::falling::{eye_drop_outside, eye_drop_turned};
 use crate::resolved::Resolved;
 use crate::shelter::{Obstacles, keep_open};
 use crate::view::{Bounds, View, within};
@@ -92,6 +93,9 @@ pub(crate) struct Class {
 pub struct RainField {
     pub(crate) classes: Vec<Class>,
     pub(crate) speed: TerminalSpeed,
+    /// What that is made of.
+    #[cfg_attr(not(feature = "wgpu"), expect(dead_code, reason = "for a device that finds droplets"))]
+    pub(crate) falls: (FallSpeedModel, Air),
     pub(crate) wind: UniformWind,
     /// Drops that do not fall, of a rate that changes.
     pub(crate) thinning: Option<Arc<Thinning>>,
@@ -186,7 +190,8 @@ impl RainField {
             }
         }
         let thinning = thinning.map(Arc::new);
-        Ok(Self { classes, speed, wind: Wind::default().air().clone(), thinning })
+        let falls = (options.fall_speed, options.air);
+        Ok(Self { classes, speed, falls, wind: Wind::default().air().clone(), thinning })
     }
 
     /// Sets the wind of the rain: at time 0 its drops are where they would be in still air.

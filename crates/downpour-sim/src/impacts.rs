@@ -24,7 +24,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod bounced;
+#[cfg(feature = "wgpu")]
+#[doc(hidden)]
+pub mod bounce_frame;
+#[doc(hidden)]
+pub mod bounced;
 mod places;
 #[cfg(feature = "wgpu")]
 pub(crate) mod slices;

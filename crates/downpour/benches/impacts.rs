@@ -1,11 +1,12 @@
-//! Drops that the CPU finds for a picture of the street at 1920x1080 whatever draws it: crowns of splashes, and droplets that rebound.
+//! Crowns of splashes and droplets that rebound of a picture of the street at 1920x1080: what the CPU does ahead of a device that finds
+//! them, and `alone`, what it takes to find all drops without one.
 
 use std::path::Path;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use downpour::Source;
 use downpour::scene::Budget;
-use downpour::shower::Shower;
+use downpour::shower::{Shower, Still};
 use downpour::trace::frame_scene::FrameScene;
 
 fn impacts(c: &mut Criterion) {
@@ -34,6 +35,12 @@ fn impacts(c: &mut Criterion) {
             let found = shower.view_at(&stage, next_s(), 1 << 22).expect("a view").expect("closed form");
             println!("{name}, {part}: {} drops", found.droplets.len());
             group.bench_function(part, |b| b.iter(|| shower.view_at(&stage, next_s(), 1 << 22)));
+            if part == "both" {
+                let mut alone = shower.clone();
+                group.bench_function("alone", |b| {
+                    b.iter(|| alone.at(&Still(&stage), &stage, next_s(), &mut |_, _| ()));
+                });
+            }
         }
         group.finish();
     }

@@ -218,6 +218,7 @@ impl Rain {
             pane: None,
             known: &[],
             splashes: None,
+            bounce: None,
         };
         let found = self.fields.prepare(&self.pool, on_gpu, &obstacles, &search)?;
         let medium = self.medium(found.resolved())?;

@@ -48,10 +48,12 @@ pub struct ShowerView {
     pub resolved: Resolved,
     /// The pane before the eye: there is no rain on the eye's side.
     pub pane: Option<PanePlane>,
-    /// Droplets that rebound, drops that drip, and splashes unless the device finds them, in the world: these are found already.
+    /// Drops that drip, and splashes and droplets that rebound unless the device finds them, in the world: these are found already.
     pub droplets: Vec<FallingDrop>,
     /// Splashes that the device is to find.
     pub splashes: Option<SplashOptions>,
+    /// Rebounds whose droplets the device is to find.
+    pub bounce: Option<Bounce>,
 }
 
 /// The rain of a weather.
@@ -213,13 +215,17 @@ impl Shower {
         let resolved = field.resolved(&view, time_s, max_room)?;
         let least = resolved.least_pixels;
         let obstacles = obstacles(stage);
-        let mut droplets = field.bounced(&obstacles, &view, least, time_s, &self.bounce)?;
-        droplets.extend(self.drips(stage, &view, least, time_s)?);
+        let mut droplets = self.drips(stage, &view, least, time_s)?;
         #[cfg(feature = "wgpu")]
-        let on_device =
-            self.splashes.filter(|splashes| splashes.fits_device(field, &view, time_s, &obstacles));
+        let (on_device, bounce) = (
+            self.splashes.filter(|splashes| splashes.fits_device(field, &view, time_s, &obstacles)),
+            Some(self.bounce).filter(|bounce| bounce.fits_device(field, &view, least, time_s, &obstacles)),
+        );
         #[cfg(not(feature = "wgpu"))]
-        let on_device = None;
+        let (on_device, bounce) = (None, None);
+        if bounce.is_none() {
+            droplets.extend(field.bounced(&obstacles, &view, least, time_s, &self.bounce)?);
+        }
         if let (Some(splashes), None) = (&self.splashes, on_device) {
             droplets.extend(field.splashes(&obstacles, &view, time_s, splashes)?);
         }
@@ -228,7 +234,7 @@ impl Shower {
             keep_outside(&mut droplets, pane, &view);
         }
         let field = Arc::clone(field);
-        Ok(Some(ShowerView { field, time_s, view, resolved, pane, droplets, splashes: on_device }))
+        Ok(Some(ShowerView { field, time_s, view, resolved, pane, droplets, splashes: on_device, bounce }))
     }
 
     /// The wind that the drops feel at a time in seconds, in its cells and relative to the stage's origin: none blows in

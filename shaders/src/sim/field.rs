@@ -57,6 +57,8 @@ shared_constants! {
         FIELD_ALWAYS: f32 = 1.0e30;
         /// In place of the terminal speed of a drop: a splash.
         FIELD_SPLASH: f32 = -1.0;
+        /// In place of the terminal speed of a drop: a droplet that rebounded, or whose speed is not known.
+        FIELD_BOUNCED: f32 = 0.0;
         /// Distance from a surface below which a drop counts as on it, m.
         SHELTER_CLEAR: f32 = 1.0e-4;
         /// Interval at which a path is divided, s.
@@ -69,8 +71,11 @@ shared_constants! {
 }
 
 /// A drop relative to the eye. Twin: `downpour_sim::field::EyeDrop`.
-pub static EYE_DROP: Module =
-    Module { path: "sim/eye_drop.wgsl", wgsl: include_str!("../../wgsl/sim/eye_drop.wgsl"), uses: &[] };
+pub static EYE_DROP: Module = Module {
+    path: "sim/eye_drop.wgsl",
+    wgsl: include_str!("../../wgsl/sim/eye_drop.wgsl"),
+    uses: &[&FIELD_CONSTANTS],
+};
 
 /// Drift of drops by terminal speed. Twin: `downpour_sim::drift`.
 pub static DRIFT: Module = Module {

@@ -6,7 +6,7 @@ use crate::common::{INVOCATION, RNG};
 use crate::{Kernel, Module};
 
 /// Every module of this file.
-pub const MODULES: &[&Module] = &[&SPLASH_CONSTANTS, &SPLASH];
+pub const MODULES: &[&Module] = &[&SPLASH_CONSTANTS, &IMPACT, &SPLASH];
 
 /// Every kernel of this file.
 pub const KERNELS: &[&Kernel] = &[&SPLASH_KERNEL];
@@ -43,11 +43,15 @@ shared_constants! {
     }
 }
 
+/// Surfaces that drops hit. Twin: `downpour_sim::impacts::splash_frame`.
+pub static IMPACT: Module =
+    Module { path: "sim/impact.wgsl", wgsl: include_str!("../../wgsl/sim/impact.wgsl"), uses: &[&BVH] };
+
 /// Crowns of splashes. Twin: `downpour_sim::impacts::splash_frame`.
 pub static SPLASH: Module = Module {
     path: "sim/splash.wgsl",
     wgsl: include_str!("../../wgsl/sim/splash.wgsl"),
-    uses: &[&FIELD_CONSTANTS, &SPLASH_CONSTANTS, &EYE_DROP, &INVOCATION, &RNG, &BVH],
+    uses: &[&FIELD_CONSTANTS, &SPLASH_CONSTANTS, &EYE_DROP, &INVOCATION, &RNG, &BVH, &IMPACT],
 };
 
 /// One invocation per drop of a slice of time.

@@ -237,30 +237,13 @@ fn field_carried(speed: f32) -> FieldCarried {
     return FieldCarried(drift, wind);
 }
 
-// Part of the exposure, s from its middle, in which a drop is beyond a pane, from its distances beyond it at the begin and the end, m;
-// the first time is above the last if it never is.
-fn field_outside(begin: f32, end: f32, half_time: f32) -> vec2f {
-    var part = vec2f(-FIELD_ALWAYS, FIELD_ALWAYS);
-    if begin < 0.0 && end < 0.0 {
-        return -part;
-    }
-    let crossing = half_time * ((begin + end) / max(abs(begin - end), 1.0e-30));
-    if begin < 0.0 {
-        part.x = -crossing;
-    }
-    if end < 0.0 {
-        part.y = crossing;
-    }
-    return part;
-}
-
 // Part of the exposure in which a drop is beyond the pane before the eye, if there is one.
 fn field_beyond(drop: EyeDrop) -> vec2f {
     let half_time = field_frame.half_shutter;
     let begin = eye_drop_position(drop, field_frame.velocity, field_frame.turning, -half_time);
     let end = eye_drop_position(drop, field_frame.velocity, field_frame.turning, half_time);
     let pane = field_frame.pane;
-    return field_outside(dot(pane.xyz, begin) - pane.w, dot(pane.xyz, end) - pane.w, half_time);
+    return eye_drop_outside(dot(pane.xyz, begin) - pane.w, dot(pane.xyz, end) - pane.w, half_time);
 }
 
 // True if the path of what is seen touches the picture, and it is between the least distance and that up to which drops are searched

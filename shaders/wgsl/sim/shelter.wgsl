@@ -32,7 +32,7 @@ struct ShelterFrame {
 
 // True if nothing is hit within a distance.
 fn shelter_clear(start: vec3f, direction: vec3f, distance: f32) -> bool {
-    return shelter_hit(start, direction, SHELTER_CLEAR, min(distance, BVH_FAR)) < 0.0;
+    return shelter_hit(start, direction, SHELTER_CLEAR, min(distance, BVH_FAR)).distance < 0.0;
 }
 
 // Drift of drops of a terminal speed: row 0 up to the opening of the shutter, others up to the quarters before.
@@ -52,8 +52,9 @@ fn shelter_could_meet(position: vec3f, speed: f32) -> bool {
         && position.z < high.z + reach;
 }
 
-// True if nothing is between the sky and `start`, which is near `at`, the position of a drop when the shutter opens.
-fn shelter_is_open(start: vec3f, at: vec3f, speed: f32, velocity: vec3f) -> bool {
+// True if nothing is between the sky and `start`, which a drop passes after quarter `first` of those before the opening of the shutter;
+// it is near `at`, where the drop would be at that opening, or on its path to there.
+fn shelter_is_open(start: vec3f, at: vec3f, first: u32, speed: f32, velocity: vec3f) -> bool {
     if shelter_frame.cuts == 0u {
         let length = sqrt(dot(velocity, velocity));
         let back = select(vec3f(0.0, 1.0, 0.0), -velocity / max(length, 1.0e-30), length > 0.0);
@@ -61,7 +62,7 @@ fn shelter_is_open(start: vec3f, at: vec3f, speed: f32, velocity: vec3f) -> bool
     }
     var position = start;
     let displacement = shelter_carried(0u, speed);
-    for (var cut = 0u; cut < shelter_frame.cuts; cut += 1u) {
+    for (var cut = first; cut < shelter_frame.cuts; cut += 1u) {
         if position.y > shelter_frame.high.y || !shelter_could_meet(position, speed) {
             return true;
         }
@@ -91,12 +92,12 @@ fn main_shelter(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
     // As it is drawn, and as it has moved.
     let start = here - drop.velocity * half_time;
     let at = here + shelter_carried(0u, drop.speed) + vec3f(0.0, drop.speed * half_time, 0.0);
-    if !shelter_is_open(start, at, drop.speed, drop.velocity) {
+    if !shelter_is_open(start, at, 0u, drop.speed, drop.velocity) {
         shelter_drops[index].diameter = 0.0;
         return;
     }
     if half_time > 0.0 {
-        let met = shelter_hit(start, drop.velocity, 0.0, 2.0 * half_time);
+        let met = shelter_hit(start, drop.velocity, 0.0, 2.0 * half_time).distance;
         if met >= 0.0 {
             let until = min(drop.present.y, met - half_time);
             shelter_drops[index].present.y = until;

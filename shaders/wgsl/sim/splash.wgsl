@@ -52,14 +52,6 @@ fn splash_middle(stage: f32) -> f32 {
     return 0.5 * (height + fingers);
 }
 
-// Unit normal of a triangle on the side that a drop of a velocity came from.
-fn splash_facing(triangle: BvhTriangle, velocity: vec3f) -> vec3f {
-    let facet = cross(triangle.edge_1, triangle.edge_2);
-    let length = sqrt(dot(facet, facet));
-    let normal = select(vec3f(0.0, 1.0, 0.0), facet / max(length, 1.0e-30), length > 0.0);
-    return select(normal, -normal, dot(normal, velocity) > 0.0);
-}
-
 // Crown of a drop that has met a surface with a normal, as the picture shows it; of diameter 0 if there is none.
 fn splash_crown(drop: EyeDrop, normal: vec3f) -> EyeDrop {
     var crown = drop;
@@ -120,7 +112,7 @@ fn main_splash(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups
     if hit.distance < 0.0 {
         return;
     }
-    let crown = splash_crown(drop, splash_facing(bvh_triangles[hit.triangle], drop.velocity));
+    let crown = splash_crown(drop, impact_facing(bvh_triangles[hit.triangle], drop.velocity));
     if crown.diameter > 0.0 {
         let slot = atomicAdd(&splash_found[0], 1u);
         if slot < splash_frame.room {

@@ -16,7 +16,9 @@ use downpour_shaders::sim::field::{
 use downpour_shaders::sim::splash::{SPLASH, SPLASH_KERNEL};
 use downpour_sim::field::chain::{FieldTime, field_between, field_fallen, field_fraction, field_part};
 use downpour_sim::field::thinning::{field_interval, field_is_below, field_less};
-use downpour_sim::field::{EyeDrop, FallingDrop, RainField, drift_position, eye_drop_turned, field_outside};
+use downpour_sim::field::{
+    EyeDrop, FallingDrop, RainField, drift_position, eye_drop_outside, eye_drop_turned,
+};
 use downpour_sim::gpu::{FieldPipeline, FieldSearch, GpuSimError, HolesOnGpu, ObstaclesOnGpu};
 use downpour_sim::impacts::SplashOptions;
 use downpour_sim::impacts::splash_frame::{splash_middle, splash_parameter};
@@ -80,8 +82,8 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             },
         ),
         FunctionCase::new(
-            "field_outside",
-            &FIELD,
+            "eye_drop_outside",
+            &EYE_DROP,
             &[Or(&Uniform(-1.0, 1.0), &[0.0]), Or(&Uniform(-1.0, 1.0), &[0.0]), Uniform(0.0, 0.05)],
             Tol::absolute(
                 1.0e-6,
@@ -89,7 +91,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             ),
             |a| {
                 let [begin, end, half_time] = a.f32s();
-                field_outside(begin, end, half_time).words()
+                eye_drop_outside(begin, end, half_time).words()
             },
         ),
         FunctionCase::new("field_part", &FIELD, &[AnyWord, Below(1 << 16)], exact, |a| {
@@ -189,18 +191,18 @@ fn known() -> [EyeDrop; 3] {
 
 /// What is special about a picture.
 #[derive(Clone, Copy, Debug)]
-struct Kind {
-    wind: fn() -> UniformWind,
-    time_s: f64,
-    shutter_s: f64,
-    far: bool,
-    has_holes: bool,
-    pane: Option<[f32; 4]>,
+pub(super) struct Kind {
+    pub(super) wind: fn() -> UniformWind,
+    pub(super) time_s: f64,
+    pub(super) shutter_s: f64,
+    pub(super) far: bool,
+    pub(super) has_holes: bool,
+    pub(super) pane: Option<[f32; 4]>,
     /// The rate changes.
-    changes: bool,
+    pub(super) changes: bool,
 }
 
-fn kind(wind: fn() -> UniformWind, time_s: f64, shutter_s: f64) -> Kind {
+pub(super) fn kind(wind: fn() -> UniformWind, time_s: f64, shutter_s: f64) -> Kind {
     Kind { wind, time_s, shutter_s, far: false, has_holes: false, pane: None, changes: false }
 }
 
@@ -219,14 +221,14 @@ fn key(drop: &EyeDrop) -> (u32, u32) {
 }
 
 /// A rain before a scene.
-struct Setting {
-    field: RainField,
-    view: View,
-    scene: SceneData,
-    origin: DVec3,
+pub(super) struct Setting {
+    pub(super) field: RainField,
+    pub(super) view: View,
+    pub(super) scene: SceneData,
+    pub(super) origin: DVec3,
 }
 
-fn setting(kind: Kind) -> Setting {
+pub(super) fn setting(kind: Kind) -> Setting {
     let sizes = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 60.0).expect("a rain");
     let field = if kind.changes {
         let rates = Keyed::new(vec![(-4.0, 60.0), (7.0, 60.0), (8.0, 0.0), (9.0, 25.0), (1.0e6, 60.0)]);
@@ -249,14 +251,14 @@ fn setting(kind: Kind) -> Setting {
 }
 
 /// A scene on the device.
-fn uploaded(gpu: &Gpu, scene: &SceneData) -> Result<LightingOnGpu, GpuError> {
+pub(super) fn uploaded(gpu: &Gpu, scene: &SceneData) -> Result<LightingOnGpu, GpuError> {
     let viewpoint = Viewpoint { eye: Vec3::ZERO, forward: Vec3::NEG_Z, up: Vec3::Y, fov_y: 0.9 };
     let frame = RenderFrame::new(scene, &viewpoint, [8, 8], 1, 0, 0).expect("a frame");
     ScenePipeline::new(gpu)?.upload(scene)?.lighting(gpu, &frame)
 }
 
 /// What stops drops in it.
-fn obstacles_on<'a>(
+pub(super) fn obstacles_on<'a>(
     lighting: &'a LightingOnGpu,
     scene: &SceneData,
     has_holes: bool,
@@ -301,6 +303,7 @@ fn found(gpu: &Gpu, kind: Kind) -> Result<Found, GpuError> {
         pane: None,
         known: &[],
         splashes: None,
+        bounce: None,
     };
     let before = pipeline.prepare(&pool, (&field, &mut on_gpu), &obstacles, &search).map_err(of_gpu)?;
     gpu.submit(&before.dispatches())?;
@@ -313,6 +316,7 @@ fn found(gpu: &Gpu, kind: Kind) -> Result<Found, GpuError> {
         pane: kind.pane,
         known: &known,
         splashes: None,
+        bounce: None,
     };
     let pass = pipeline.prepare(&pool, (&field, &mut on_gpu), &obstacles, &search).map_err(of_gpu)?;
     gpu.submit(&pass.dispatches())?;
@@ -334,7 +338,7 @@ fn found(gpu: &Gpu, kind: Kind) -> Result<Found, GpuError> {
     })
 }
 
-fn run(words: usize, cpu: Vec<u32>, gpu: Vec<u32>) -> Run {
+pub(super) fn run(words: usize, cpu: Vec<u32>, gpu: Vec<u32>) -> Run {
     Run {
         arguments: (0..(cpu.len() / words) as u32).map(|k| vec![k]).collect(),
         cpu: Cpu(cpu),
@@ -419,6 +423,7 @@ fn crowns_case(gpu: &Gpu, kind: Kind) -> Result<Run, GpuError> {
         pane: kind.pane,
         known: &[],
         splashes: Some(&options),
+        bounce: None,
     };
     let pool = BufferPool::new(gpu);
     let pass = pipeline.prepare(&pool, (&field, &mut on_gpu), &obstacles, &search);
@@ -451,16 +456,16 @@ fn crowns_case(gpu: &Gpu, kind: Kind) -> Result<Run, GpuError> {
     Ok(run(7, cpu, gpu_words))
 }
 
-fn steady() -> UniformWind {
+pub(super) fn steady() -> UniformWind {
     uniform(&Keyed::from(6.0), None)
 }
 
-fn gusty() -> UniformWind {
+pub(super) fn gusty() -> UniformWind {
     let speed = Keyed::new(vec![(0.0, 3.0), (4.0, 9.0), (20.0, 6.0)]).expect("in range");
     uniform(&speed, Some(Gusts::default()))
 }
 
-fn still() -> UniformWind {
+pub(super) fn still() -> UniformWind {
     uniform(&Keyed::from(0.0), None)
 }
 

@@ -11,7 +11,7 @@ use crate::SimError;
 use crate::drift::Drift;
 use crate::field::chain::FieldTime;
 use crate::resolved::Resolved;
-use crate::view::View;
+use crate::view::{Bounds, View};
 
 /// Columns of a class that a picture may show.
 #[repr(C)]
@@ -177,13 +177,27 @@ impl RainField {
         resolved: Resolved,
     ) -> FieldQuery {
         let base = drift.middle();
+        let shared = self.classes.iter().find_map(&of_class);
+        let shared = shared.unwrap_or_else(|| Reach::of_view(view, view.least_pixels));
+        let row = |class: &Class, drift: &Drift| class.row(view, &of_class(class)?, drift, base);
+        self.query_rows(view, (time_s, drift), row, shared, room, resolved)
+    }
+
+    /// The question for drops of some classes in columns.
+    pub(crate) fn query_rows(
+        &self,
+        view: &View,
+        (time_s, drift): (f64, Drift),
+        of_class: impl Fn(&Class, &Drift) -> Option<FieldClass>,
+        shared: Reach,
+        room: u32,
+        resolved: Resolved,
+    ) -> FieldQuery {
+        let base = drift.middle();
         let (mut classes, mut columns) = (Vec::new(), 0u32);
         let (mut slowest, mut deepest) = (f64::INFINITY, f64::INFINITY);
-        let mut shared: Option<Reach> = None;
         for (k, class) in (0u32..).zip(&self.classes) {
-            let Some(reach) = of_class(class) else { continue };
-            shared.get_or_insert(reach);
-            let Some(mut row) = class.row(view, &reach, &drift, base) else { continue };
+            let Some(mut row) = of_class(class, &drift) else { continue };
             row.first_node = k * self.nodes_of_class();
             row.first_threshold = k * 2 * FIELD_THRESHOLDS;
             row.first_column = columns;
@@ -197,7 +211,6 @@ impl RainField {
             deepest = deepest.min(view.eye.y + f64::from(row.heights[0]));
             classes.push(row);
         }
-        let shared = shared.unwrap_or_else(|| Reach::of_view(view, view.least_pixels));
         let time = FieldTime::new(time_s);
         let frame = FieldFrame {
             sides: field_normals(view.sides()),
@@ -241,12 +254,24 @@ impl Class {
     /// The columns of a class in which a search may find drops; `base` is taken off the drift.
     fn row(&self, view: &View, reach: &Reach, drift: &Drift, base: DVec3) -> Option<FieldClass> {
         let seen = self.seen(view, reach, drift)?;
-        let [xs, zs] = self.columns(&seen.bounds, drift);
+        let middle = seen.middle - base;
+        Some(FieldClass {
+            drift: [middle.x as f32, middle.z as f32],
+            reach: seen.radius as f32,
+            middle: (seen.middle.y - view.eye.y) as f32,
+            farthest: reach.farthest as f32,
+            margin: reach.margin as f32,
+            ..self.row_within(view, &seen.bounds, drift, base)
+        })
+    }
+
+    /// The columns of a class that may hold drops in a box; `base` is taken off the drift.
+    pub(crate) fn row_within(&self, view: &View, bounds: &Bounds, drift: &Drift, base: DVec3) -> FieldClass {
+        let [xs, zs] = self.columns(bounds, drift);
         let eye = view.eye - base;
         let at = [eye.x / self.edge, eye.z / self.edge];
         let periods = (eye.y / self.period * 4_294_967_296.0).round() as i64 as u64;
-        let middle = seen.middle - base;
-        Some(FieldClass {
+        FieldClass {
             seed: self.seed,
             edge: self.edge as f32,
             period: self.period as f32,
@@ -256,14 +281,9 @@ impl Class {
             eye_column: at.map(|at| at.floor() as i32),
             eye_in_column: at.map(|at| (at - at.floor()) as f32),
             eye_periods: [(periods >> 32) as u32, periods as u32],
-            heights: [seen.bounds.low.y, seen.bounds.high.y].map(|height| (height - view.eye.y) as f32),
-            drift: [middle.x as f32, middle.z as f32],
-            reach: seen.radius as f32,
-            middle: (seen.middle.y - view.eye.y) as f32,
-            farthest: reach.farthest as f32,
-            margin: reach.margin as f32,
+            heights: [bounds.low.y, bounds.high.y].map(|height| (height - view.eye.y) as f32),
             ..FieldClass::default()
-        })
+        }
     }
 }
 

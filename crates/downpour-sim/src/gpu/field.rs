@@ -1,9 +1,14 @@
 //! Drops of a rain in closed form on a GPU: those that [`RainField::visible_among`] lists on the CPU.
 
 use std::collections::BTreeMap;
+use std::mem::offset_of;
 use std::sync::OnceLock;
 
 use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu, workgroups_for};
+use downpour_shaders::sim::bounce::{
+    BOUNCE_CLEAR_KERNEL, BOUNCE_FIND_KERNEL, BOUNCE_HIT_AMONG_HOLES_KERNEL, BOUNCE_HIT_KERNEL, BOUNCE_LANES,
+    BOUNCE_LIST_KERNEL, BOUNCE_SLICE,
+};
 use downpour_shaders::sim::field::{
     FIELD_CLEAR_KERNEL, FIELD_FIND_KERNEL, SHELTER_AMONG_HOLES_KERNEL, SHELTER_KERNEL,
 };
@@ -15,7 +20,9 @@ use crate::drift::Drift;
 use crate::field::frame::{FieldQuery, ShelterFrame};
 use crate::field::{EyeDrop, RainField, check_time};
 use crate::impacts::SplashOptions;
+use crate::impacts::bounce_frame::{BounceParts, BounceSearch, MAX_DROPLETS};
 use crate::impacts::splash_frame::SplashSearch;
+use crate::options::Bounce;
 use crate::resolved::Resolved;
 use crate::shelter::{CUT_S, MAX_BACK_S, number_of_cuts};
 use crate::view::View;
@@ -58,10 +65,12 @@ pub struct FieldSearch<'a> {
     pub max_room: u32,
     /// A pane before the eye: its unit normal, away from the eye, and its distance, m; drops on the eye's side are not listed.
     pub pane: Option<[f32; 4]>,
-    /// Drops that are known already, at the beginning of the list: droplets that rebound.
+    /// Drops that are known already, at the beginning of the list, such as those that drip.
     pub known: &'a [EyeDrop],
     /// Splashes that are searched for as well, where there are obstacles, whose triangles are numbered by their places in the list.
     pub splashes: Option<&'a SplashOptions>,
+    /// Rebounds whose droplets are searched for as well, where there are obstacles, numbered as for splashes.
+    pub bounce: Option<&'a Bounce>,
 }
 
 /// Lists that differ by less than so many drops have buffers of one size.
@@ -77,6 +86,10 @@ pub struct FieldPipeline {
     /// Made for the first obstacles with holes.
     among_holes: OnceLock<ComputeKernel>,
     splash: ComputeKernel,
+    /// Made for the first droplets that are searched for: clear, find, list.
+    bounce: OnceLock<[ComputeKernel; 3]>,
+    bounce_hit: OnceLock<ComputeKernel>,
+    bounce_hit_among_holes: OnceLock<ComputeKernel>,
 }
 
 /// A rain on the device.
@@ -89,7 +102,12 @@ pub struct FieldOnGpu {
     parts: wgpu::Buffer,
     /// Drift of drops up to whole quarters of a second, by their numbers.
     cuts: BTreeMap<i64, Drift>,
+    /// The same up to whole sixteenths.
+    sixteenths: BTreeMap<i64, Drift>,
 }
+
+/// A kernel with its bindings and its workgroups.
+type BoundKernel<'a> = (&'a ComputeKernel, wgpu::BindGroup, [u32; 3]);
 
 /// Where drops are listed, and counted.
 #[derive(Clone, Copy)]
@@ -112,6 +130,8 @@ pub struct FieldPass<'a> {
     pipeline: &'a FieldPipeline,
     search: Search<'a>,
     splashes: Vec<(Search<'a>, wgpu::BindGroup, [u32; 3])>,
+    /// Of the search for droplets.
+    bounces: Vec<BoundKernel<'a>>,
     drops: wgpu::Buffer,
     found: wgpu::Buffer,
     known: u32,
@@ -134,6 +154,9 @@ impl FieldPipeline {
             shelter: kernel(&SHELTER_KERNEL)?,
             among_holes: OnceLock::new(),
             splash: kernel(&SPLASH_KERNEL)?,
+            bounce: OnceLock::new(),
+            bounce_hit: OnceLock::new(),
+            bounce_hit_among_holes: OnceLock::new(),
         })
     }
 
@@ -159,6 +182,7 @@ impl FieldPipeline {
             nodes: BufferSource::storage(&self.gpu, "sizes of drops", &nodes)?,
             thresholds: BufferSource::storage(&self.gpu, "numbers of chains", &thresholds)?,
             cuts: BTreeMap::new(),
+            sixteenths: BTreeMap::new(),
         })
     }
 
@@ -182,10 +206,21 @@ impl FieldPipeline {
             _ => Vec::new(),
         };
         let crowns = SplashOptions::room(&slices);
+        let bounce = search.bounce.filter(|bounce| bounce.fraction > 0.0).zip(obstacles.bounds);
+        let kept_free = crowns + if bounce.is_some() { MAX_DROPLETS } else { 0 };
         let mut query =
-            field.query(search.view, search.time_s, search.max_room.saturating_sub(crowns).max(1))?;
+            field.query(search.view, search.time_s, search.max_room.saturating_sub(kept_free).max(1))?;
+        let least_pixels = query.resolved.least_pixels;
+        let bounce = bounce.map(|(bounce, bounds)| {
+            let drift_of = |number: i64| {
+                let new = || Drift::new(&field.wind, number as f64 * f64::from(BOUNCE_SLICE));
+                on.sixteenths.entry(number).or_insert_with(new).clone()
+            };
+            let (view, obstacles) = ((search.view, least_pixels), (bounds, obstacles.origin));
+            bounce.search(field, view, search.time_s, obstacles, drift_of)
+        });
         let usage = wgpu::BufferUsages::STORAGE;
-        query.frame.room += crowns;
+        query.frame.room += crowns + bounce.as_ref().map_or(0, |bounce| bounce.frame.room);
         let (known, room) = (search.known.len() as u32, query.frame.room);
         query.frame.first = known;
         query.frame.pane = search.pane.unwrap_or_default();
@@ -215,11 +250,20 @@ impl FieldPipeline {
             let groups = workgroups_for(frame.drops);
             splashes.push((searched, self.splash.bind(&self.gpu, &bound)?, groups));
         }
+        let bounces = match bounce {
+            Some(mut bounce) if bounce.query.frame.columns > 0 => {
+                (bounce.frame.first, bounce.frame.room) = (known, room);
+                bounce.frame.pane = search.pane.unwrap_or_default();
+                self.bounces(buffers, (field, on), obstacles, &bounce, to)?
+            }
+            _ => Vec::new(),
+        };
         on.forget_before((search.time_s / CUT_S) as i64);
         Ok(FieldPass {
             pipeline: self,
             search: of_picture,
             splashes,
+            bounces,
             drops,
             found,
             known,
@@ -266,6 +310,87 @@ impl FieldPipeline {
             shelter = Some((kernel, kernel.bind_at(gpu, bound)?, workgroups_for(room)));
         }
         Ok(Search { clear: (clear, workgroups_for(room)), find, shelter })
+    }
+
+    /// Makes ready to find droplets.
+    fn bounces(
+        &self,
+        buffers: &impl BufferSource,
+        (field, on): (&RainField, &mut FieldOnGpu),
+        obstacles: &ObstaclesOnGpu<'_>,
+        search: &BounceSearch,
+        to: ListOnGpu<'_>,
+    ) -> Result<Vec<BoundKernel<'_>>, GpuSimError> {
+        let Some(bounds) = obstacles.bounds else { return Ok(Vec::new()) };
+        let gpu = &self.gpu;
+        let BounceSearch { end_s, view, query, frame, rows } = search;
+        let field_frame = buffers.uniform("field frame of droplets", &query.frame)?;
+        let classes = buffers.storage("classes of droplets", &query.classes)?;
+        let drift = buffers.storage("drift of drops with droplets", &query.drift)?;
+        let bounce_frame = buffers.uniform("bounce frame", frame)?;
+        let rows = buffers.storage("motion by the wind", rows)?;
+        let places = u64::from(frame.parts.next_multiple_of(LIST_STEP));
+        let bytes = offset_of!(BounceParts, drops) as u64 + places * size_of::<EyeDrop>() as u64;
+        let parts = buffers.buffer("parts of paths", bytes, wgpu::BufferUsages::STORAGE)?;
+        let (shelter, paths) = shelter_frame(field, on, query, (obstacles, bounds), (view, *end_s));
+        let shelter = buffers.uniform("shelter frame of droplets", &shelter)?;
+        let paths = buffers.storage("drift of paths of drops with droplets", &paths)?;
+        let [clear, find, list] = self.bounce_kernels()?;
+        let hit = self.bounce_hit(obstacles.holes.is_some())?;
+        let of_find = [
+            (0, &field_frame),
+            (1, &classes),
+            (2, &on.nodes),
+            (3, &on.thresholds),
+            (4, &drift),
+            (7, &on.begins),
+            (8, &on.parts),
+            (9, &bounce_frame),
+            (10, &rows),
+            (11, &parts),
+        ];
+        let mut of_hit = vec![(1, obstacles.nodes), (2, obstacles.triangles)];
+        if let Some(HolesOnGpu { corners, table, texels }) = obstacles.holes {
+            of_hit.extend([(3, corners), (4, table), (5, texels)]);
+        }
+        of_hit.extend([(6, &shelter), (8, &paths), (9, &bounce_frame), (10, &rows), (11, &parts)]);
+        let of_list = [(9, &bounce_frame), (11, &parts), (12, to.drops), (13, to.found)];
+        let groups = workgroups_for(frame.parts);
+        Ok(vec![
+            (clear, clear.bind_at(gpu, [(11, &parts)])?, [1; 3]),
+            (
+                find,
+                find.bind_at(gpu, of_find)?,
+                workgroups_for(query.frame.columns.saturating_mul(BOUNCE_LANES)),
+            ),
+            (hit, hit.bind_at(gpu, of_hit)?, groups),
+            (list, list.bind_at(gpu, of_list)?, groups),
+        ])
+    }
+
+    /// The kernels of droplets that do not ask for obstacles: clear, find, list.
+    fn bounce_kernels(&self) -> Result<&[ComputeKernel; 3], GpuError> {
+        if let Some(kernels) = self.bounce.get() {
+            return Ok(kernels);
+        }
+        let kernel = |kernel| ComputeKernel::new(&self.gpu, kernel, &[]);
+        let made =
+            [kernel(&BOUNCE_CLEAR_KERNEL)?, kernel(&BOUNCE_FIND_KERNEL)?, kernel(&BOUNCE_LIST_KERNEL)?];
+        Ok(self.bounce.get_or_init(|| made))
+    }
+
+    /// The kernel that follows drops and droplets among obstacles, with holes or without.
+    fn bounce_hit(&self, has_holes: bool) -> Result<&ComputeKernel, GpuError> {
+        let (kept, kernel) = if has_holes {
+            (&self.bounce_hit_among_holes, &BOUNCE_HIT_AMONG_HOLES_KERNEL)
+        } else {
+            (&self.bounce_hit, &BOUNCE_HIT_KERNEL)
+        };
+        if let Some(kernel) = kept.get() {
+            return Ok(kernel);
+        }
+        let made = ComputeKernel::new(&self.gpu, kernel, &[])?;
+        Ok(kept.get_or_init(|| made))
     }
 
     /// The kernel that asks for obstacles, with holes or without.
@@ -325,6 +450,9 @@ impl FieldOnGpu {
     fn forget_before(&mut self, quarter: i64) {
         let longest = (MAX_BACK_S / CUT_S) as i64 + 8;
         self.cuts.retain(|number, _| (quarter - longest..quarter + 8).contains(number));
+        // Droplets and exposures of 10 s at most.
+        let sixteenths = 4 * (quarter - 88)..4 * (quarter + 8);
+        self.sixteenths.retain(|number, _| sixteenths.contains(number));
     }
 }
 
@@ -349,6 +477,7 @@ impl FieldPass<'_> {
             all.extend(search.dispatches(self.pipeline));
             all.push(self.pipeline.splash.dispatch(bindings, *groups));
         }
+        all.extend(self.bounces.iter().map(|(kernel, bindings, groups)| kernel.dispatch(bindings, *groups)));
         all
     }
 

@@ -1,8 +1,10 @@
-//! Droplets that rebound from impacts.
+//! Droplets that rebound from impacts. Twin of `shaders/wgsl/sim/bounce.wgsl`, `shaders/wgsl/sim/bounce_find.wgsl` and
+//! `shaders/wgsl/sim/bounce_hit.wgsl`, in f64 and in the world.
 
 use downpour_drop::fall_speed::relaxation;
 use downpour_math::ops::f64 as ops;
 use downpour_math::rng::{rng_draw, rng_unit};
+use downpour_shaders::sim::bounce::{BOUNCE_CHANCE, BOUNCE_HIGH, BOUNCE_LOW, BOUNCE_MIN_RELAXATION};
 use downpour_shaders::sim::step::{STEP_CLEAR, VOLUME_RADIUS};
 use glam::DVec3;
 
@@ -28,11 +30,8 @@ const SLICE_M: f64 = 1.5;
 /// Least span of time in which impacts are searched at once, s: that of the slips of droplets.
 const SLICE_S: f64 = 0.125;
 
-/// Dimension of the random numbers of rebounds.
-const CHANCE: u32 = 8203;
-
 /// Difference between the id of a drop and that of its droplet.
-const DROPLET: u64 = 0x9e37_79b9_7f4a_7c15;
+const DROPLET: u64 = (BOUNCE_HIGH as u64) << 32 | BOUNCE_LOW as u64;
 
 impl RainField {
     /// Droplets that rebound from impacts, as a picture shows them at a time in seconds.
@@ -58,7 +57,7 @@ impl RainField {
         let half = 0.5 * view.shutter_s;
         let longest = f64::from(bounce.max_time_s).min(MAX_SPAN_S - view.shutter_s);
         let sent_up = |id: u64| {
-            let [chance, ..] = rng_draw([id as u32, (id >> 32) as u32], 0, 0, CHANCE).map(rng_unit);
+            let [chance, ..] = rng_draw([id as u32, (id >> 32) as u32], 0, 0, BOUNCE_CHANCE).map(rng_unit);
             chance < bounce.fraction
         };
         let sides = view.sides();
@@ -83,19 +82,19 @@ impl RainField {
                 let wanted = move |drop: &Candidate| {
                     sent_up(drop.id) && {
                         let range = view.range(f64::from(drop.diameter * bounce.size), least_pixels);
-                        let (middle, radius) = travels.ball(self, drop, bounce);
-                        may_be_seen((middle, radius + curved + origins.margin), range, view, swept_sides)
+                        let (middle, radius) = travels.bounce_ball(self, drop, bounce);
+                        bounce_may_show((middle, radius + curved + origins.margin), range, view, swept_sides)
                     }
                 };
                 Some(OfClass { bounds, in_part, wanted })
             };
             let span = [time_s - ages[1], time_s - ages[0]];
             let shown = |impact: &Impact| {
-                let droplet = Droplet::of(self, impact, bounce)?;
+                let droplet = Droplet::bounce_hit_droplet(self, impact, bounce)?;
                 let age = time_s - impact.time_s;
                 // A droplet that starts later in the exposure is listed as if it had always moved.
                 let (position, velocity) = if age > 0.0 {
-                    droplet.at(age)
+                    droplet.bounce_at(age)
                 } else {
                     (droplet.start + droplet.leaves * age, droplet.leaves)
                 };
@@ -109,7 +108,8 @@ impl RainField {
             droplets.extend(self.impacts_of(&facets, &mut places, span, of_class, shown)?);
         }
         let listed = droplets.into_iter().filter_map(|(id, age, droplet, position, velocity)| {
-            let stopped = droplet.stopped(obstacles, (age + half).min(longest)).map(|after| after - age);
+            let stopped =
+                droplet.bounce_hit_stopped(obstacles, (age + half).min(longest)).map(|after| after - age);
             let until = stopped.unwrap_or(longest - age);
             let mut drop = FallingDrop {
                 position,
@@ -138,11 +138,11 @@ impl RainField {
 }
 
 /// Displacement of droplets of some age.
-struct Travels {
+pub(super) struct Travels {
     /// Ages, s, the smaller not below 0.
-    ages: [f64; 2],
+    pub(super) ages: [f64; 2],
     /// Drift of drops up to the picture's time, and up to the start of the oldest and the youngest.
-    drifts: [Drift; 3],
+    pub(super) drifts: [Drift; 3],
 }
 
 impl Travels {
@@ -154,30 +154,30 @@ impl Travels {
 
     /// Ball in which the droplet of a drop is at the picture's time, wherever on its path the drop has hit something: middle, and
     /// radius, m, in a wind that is steady meanwhile.
-    fn ball(&self, field: &RainField, drop: &Candidate, bounce: &Bounce) -> (DVec3, f64) {
+    fn bounce_ball(&self, field: &RainField, drop: &Candidate, bounce: &Bounce) -> (DVec3, f64) {
         let speed = field.speed.at(f64::from(drop.diameter * bounce.size)).unwrap_or(0.0);
         let [now, oldest, youngest] = &self.drifts;
         let (carried, fall) = (now.of(speed)[0], DVec3::Y * speed);
         let wind = oldest.of(drop.speed)[1].length().max(now.of(drop.speed)[1].length());
         let leaves = leaving_speed(bounce, drop.speed, wind);
         let lasts = self.ages.map(|age| slip_lasts(age, speed));
-        // Without its slip it would have followed the wind from the hit on; the path of the drop and the way from there are lines.
+        // The slip that it has from the wind and its fall, as if it left the surface at rest; the path of the drop is a line.
         let from = [(0, oldest, 1), (1, youngest, 0)].map(|(end, then, age)| {
             let [displacement, velocity] = then.of(speed);
-            let followed = carried - displacement - fall * self.ages[age];
-            (drop.ends[end] + followed, velocity - fall)
+            let slip = fall - velocity;
+            let [moved, _] = bounce_slip(slip, speed, self.ages[age]);
+            (drop.ends[end] + carried - displacement - fall * self.ages[age] + moved, slip)
         });
         let slip = from[0].1.length().max(from[1].1.length());
-        let mean = 0.5 * (lasts[0] + lasts[1]);
-        let middle = from[0].0.midpoint(from[1].0) - from[0].1.midpoint(from[1].1) * mean;
-        let radius =
-            0.5 * from[0].0.distance(from[1].0) + 0.5 * (lasts[1] - lasts[0]) * slip + leaves * lasts[1];
-        // Across the fall the slip lasts twice as long as along it.
-        (middle, radius + 0.5 * mean * slip)
+        let across = relaxation(speed).horizontal_s.max(1.0e-9);
+        // An exponential is as far from its chord.
+        let bent = slip * (lasts[1] - lasts[0]) * (0.125 * (self.ages[1] - self.ages[0]) / across).min(1.0);
+        let radius = 0.5 * from[0].0.distance(from[1].0) + bent + leaves * lasts[1];
+        (from[0].0.midpoint(from[1].0), radius)
     }
 
     /// Origins of droplets that a picture shows, of the drops of a class.
-    fn origins(
+    pub(super) fn origins(
         &self,
         field: &RainField,
         class: &Class,
@@ -205,7 +205,7 @@ impl Travels {
         let (low, high) = carried
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), way| (low.min(way), high.max(way)));
         let own = own + 0.05 * (high - low).length();
-        let margin = 0.5 * view.shutter_s * (leaves + wind) + class.largest;
+        let margin = 0.5 * view.shutter_s * (leaves + wind + view.velocity.length()) + class.largest;
         let seen = view.bounds(range, margin);
         let way = Bounds {
             low: low - DVec3::splat(own) - DVec3::Y * (speeds[1] * self.ages[1]),
@@ -217,20 +217,20 @@ impl Travels {
 }
 
 /// Maximum speed, m/s, with which a droplet leaves a surface that a drop with a terminal speed hits in a wind, m/s.
-fn leaving_speed(bounce: &Bounce, speed: f64, wind: f64) -> f64 {
+pub(super) fn leaving_speed(bounce: &Bounce, speed: f64, wind: f64) -> f64 {
     f64::from(bounce.restitution.max(1.0 - bounce.grip)) * ops::hypot(speed, wind)
 }
 
 /// Seconds for which the slip of a droplet with a terminal speed counts up to an age, s, across the fall.
-fn slip_lasts(age_s: f64, speed: f64) -> f64 {
+pub(super) fn slip_lasts(age_s: f64, speed: f64) -> f64 {
     let time = relaxation(speed).horizontal_s.max(1.0e-9);
     time * (1.0 - ops::exp(-age_s / time))
 }
 
 /// Where the droplets of a class that a picture shows come from.
 #[derive(Clone, Copy)]
-struct Origins {
-    bounds: Bounds,
+pub(super) struct Origins {
+    pub(super) bounds: Bounds,
     /// Bounds of the droplets' ways.
     way: Bounds,
     /// Maximum distance from the eye, m.
@@ -244,14 +244,24 @@ impl Origins {
     fn may_be_in(&self, place: &Bounds, view: &View, sides: &[DVec3; 5]) -> bool {
         let (low, high) = (place.low + self.way.low, place.high + self.way.high);
         let radius = 0.5 * (high - low).length() + self.margin;
-        may_be_seen((low.midpoint(high), radius), self.range, view, sides)
+        bounce_may_show((low.midpoint(high), radius), self.range, view, sides)
     }
 }
 
 /// False if a ball, by its middle and its radius, m, is farther from the eye than `range` or outside of the picture's sides.
-fn may_be_seen((middle, radius): (DVec3, f64), range: f64, view: &View, sides: &[DVec3; 5]) -> bool {
+fn bounce_may_show((middle, radius): (DVec3, f64), range: f64, view: &View, sides: &[DVec3; 5]) -> bool {
     let offset = middle - view.eye;
     offset.length() - radius <= range && within(sides, offset, radius)
+}
+
+/// Displacement, m, due to the slip between a droplet of a terminal speed and the air after a time, and what is left of the slip, m/s.
+#[must_use]
+pub fn bounce_slip(slip: DVec3, speed: f64, age_s: f64) -> [DVec3; 2] {
+    let relaxation = relaxation(speed);
+    let times = DVec3::new(relaxation.horizontal_s, relaxation.vertical_s, relaxation.horizontal_s)
+        .max(DVec3::splat(BOUNCE_MIN_RELAXATION.into()));
+    let left = DVec3::from_array((-age_s / times).to_array().map(ops::exp));
+    [slip * times * (1.0 - left), slip * left]
 }
 
 /// A droplet after its rebound.
@@ -268,7 +278,7 @@ struct Droplet<'a> {
 }
 
 impl<'a> Droplet<'a> {
-    fn of(field: &'a RainField, impact: &Impact, bounce: &Bounce) -> Option<Self> {
+    fn bounce_hit_droplet(field: &'a RainField, impact: &Impact, bounce: &Bounce) -> Option<Self> {
         let leaves =
             motion_bounce(impact.velocity, impact.normal, bounce.restitution, bounce.grip).as_dvec3();
         let diameter = f64::from(impact.diameter) * f64::from(bounce.size);
@@ -276,12 +286,12 @@ impl<'a> Droplet<'a> {
         let start = impact.position + impact.normal.as_dvec3() * f64::from(STEP_CLEAR);
         let begin_s = impact.time_s;
         let mut droplet = Self { field, start, leaves, diameter, speed, begin_s, follows: [DVec3::ZERO; 2] };
-        droplet.follows = droplet.followed(0.0);
+        droplet.follows = droplet.bounce_carried(0.0);
         Some(droplet)
     }
 
     /// Motion, up to an age after the impact, of a drop of its size that has always followed the wind.
-    fn followed(&self, age_s: f64) -> [DVec3; 2] {
+    fn bounce_carried(&self, age_s: f64) -> [DVec3; 2] {
         let at = self.field.wind.prepared(self.begin_s + age_s);
         let relaxation = relaxation(self.speed);
         let across = at.followed(relaxation.horizontal_s);
@@ -295,22 +305,19 @@ impl<'a> Droplet<'a> {
     }
 
     /// Position and velocity at an age: the initial slip decays, along the fall twice as fast as across it.
-    fn at(&self, age_s: f64) -> (DVec3, DVec3) {
-        let relaxation = relaxation(self.speed);
-        let times = DVec3::new(relaxation.horizontal_s, relaxation.vertical_s, relaxation.horizontal_s)
-            .max(DVec3::splat(1.0e-9));
-        let left = DVec3::from_array((-age_s / times).to_array().map(ops::exp));
+    fn bounce_at(&self, age_s: f64) -> (DVec3, DVec3) {
         let slip = self.leaves - self.follows[1];
-        let [carried, velocity] = self.followed(age_s);
-        (self.start + carried - self.follows[0] + slip * times * (1.0 - left), velocity + slip * left)
+        let [carried, velocity] = self.bounce_carried(age_s);
+        let [moved, left] = bounce_slip(slip, self.speed, age_s);
+        (self.start + carried - self.follows[0] + moved, velocity + left)
     }
 
     /// Age at which it hits something, up to an age.
-    fn stopped(&self, obstacles: &Obstacles<'_>, age_s: f64) -> Option<f64> {
+    fn bounce_hit_stopped(&self, obstacles: &Obstacles<'_>, age_s: f64) -> Option<f64> {
         let steps = (age_s / FINE_S).ceil().max(0.0) as u32;
         let mut from = self.start - obstacles.origin;
         for step in 1..=steps {
-            let to = self.at(f64::from(step) * FINE_S).0 - obstacles.origin;
+            let to = self.bounce_at(f64::from(step) * FINE_S).0 - obstacles.origin;
             let velocity = ((to - from) / FINE_S).as_vec3();
             if let Some(hit) = met(obstacles, from.as_vec3(), velocity, FINE_S as f32) {
                 return Some(f64::from(step - 1) * FINE_S + f64::from(hit.distance));

@@ -1,5 +1,5 @@
 //! What a GPU needs to list the crowns of a slice of time; twin of `shaders/wgsl/sim/splash.wgsl`, whose struct has the layout of
-//! [`SplashFrame`].
+//! [`SplashFrame`], and of `shaders/wgsl/sim/impact.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
 use downpour_bvh::BvhTriangle;
@@ -190,7 +190,7 @@ pub fn splash_middle(stage: f32) -> f32 {
 
 /// Unit normal of a triangle on the side that a drop of a velocity came from.
 #[must_use]
-pub fn splash_facing(triangle: &BvhTriangle, velocity: Vec3) -> Vec3 {
+pub fn impact_facing(triangle: &BvhTriangle, velocity: Vec3) -> Vec3 {
     let facet = Vec3::from(triangle.edge_1).cross(triangle.edge_2.into());
     let normal = facet.normalize_or(Vec3::Y);
     if normal.dot(velocity) > 0.0 { -normal } else { normal }

@@ -1,5 +1,6 @@
 //! Drops of a frame: a list, or a question to the device that finds them.
 
+use downpour_shaders::sim::field::FIELD_BOUNCED;
 use downpour_sim::field::{DropKind, EyeDrop, VisibleDrops};
 use downpour_sim::resolved::Resolved;
 
@@ -17,7 +18,7 @@ pub(super) enum Drops {
 /// Drops that a device has found.
 #[derive(Clone, Debug)]
 pub(super) struct Found {
-    /// The drops relative to the eye, with their place among the droplets that were known.
+    /// The drops relative to the eye, with their place among those that were known.
     pub(super) drops: Vec<(EyeDrop, Option<u32>)>,
     /// Number of drops that were looked at.
     pub(super) simulated: u64,
@@ -41,7 +42,14 @@ impl Drops {
         let Found { drops, simulated } = found.unwrap_or(Found { drops: Vec::new(), simulated: 0 });
         let in_world = |(drop, known): (EyeDrop, Option<u32>)| {
             let droplet = known.and_then(|known| shown.droplets.get(known as usize));
-            let kind = if drop.speed < 0.0 { DropKind::Splash } else { DropKind::Falling };
+            // The device lists splashes and droplets by what stands in place of a terminal speed; a drop that falls has one.
+            let kind = if drop.speed < FIELD_BOUNCED {
+                DropKind::Splash
+            } else if drop.speed > FIELD_BOUNCED {
+                DropKind::Falling
+            } else {
+                DropKind::Bounced
+            };
             droplet.copied().unwrap_or_else(|| drop.to_falling(shown.view.eye, kind))
         };
         let drops = drops.into_iter().map(in_world).collect();

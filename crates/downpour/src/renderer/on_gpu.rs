@@ -124,6 +124,7 @@ impl OnGpu {
             pane: shown.pane.map(|pane| pane.outward.extend(pane.distance).to_array()),
             known: &known,
             splashes: shown.splashes.as_ref(),
+            bounce: shown.bounce.as_ref(),
         };
         let drops = PictureDrops::Field(FieldDrops { field: rain, on_gpu, search, origin: stage.origin });
         Ok(self.renderer.draw_for(of, &stage.data, &stage.viewpoint, drops, masks, options)?)
