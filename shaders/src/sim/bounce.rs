@@ -1,6 +1,8 @@
 //! Droplets that rebound before a picture. Twin: `downpour_sim::impacts`.
 
-use super::field::{DRIFT, EYE_DROP, FIELD, FIELD_CONSTANTS, SHELTER, SHELTER_AMONG_HOLES};
+use super::field::{
+    DRIFT, EYE_DROP, FIELD, FIELD_CONSTANTS, SHELTER, SHELTER_AMONG_HOLES, SHELTER_HIT, SHELTER_HIT_HOLES,
+};
 use super::splash::IMPACT;
 use super::step::{MOTION, STEP_CONSTANTS};
 use crate::bvh::BVH;
@@ -68,6 +70,7 @@ pub static BOUNCE_HIT: Module = Module {
         &MOTION,
         &BVH,
         &IMPACT,
+        &SHELTER_HIT,
         &SHELTER,
         &BOUNCE,
     ],
@@ -84,6 +87,7 @@ pub static BOUNCE_HIT_AMONG_HOLES: Module = Module {
         &MOTION,
         &BVH,
         &IMPACT,
+        &SHELTER_HIT_HOLES,
         &SHELTER_AMONG_HOLES,
         &BOUNCE,
     ],
