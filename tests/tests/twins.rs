@@ -35,7 +35,17 @@ const ELSEWHERE: [(&[&str], &str); 12] = [
         "the GPU steps tiles with a halo in workgroup memory, the CPU rows in lanes (downpour_lattice::puddle::step)",
     ),
     (
-        &["field_beyond", "field_carried", "field_chain", "field_meets", "field_product", "field_shows"],
+        &[
+            "field_beyond",
+            "field_carried",
+            "field_chain",
+            "field_column",
+            "field_drop",
+            "field_list",
+            "field_meets",
+            "field_product",
+            "field_shows",
+        ],
         "the CPU computes in f64 and in wide integers, in the world (downpour_sim::field, drift and view)",
     ),
     (&["bounce_row", "shelter_carried"], "downpour_sim::drift"),

@@ -34,37 +34,17 @@ fn bounce_find_parts(drop: EyeDrop) {
 }
 
 // Lists the parts of the paths of the drops of a chain.
-fn bounce_find_chain(kind: FieldClass, column: vec2i, key: vec2u, index: u32) {
-    let words = rng_draw(key, index, 0u, FIELD_CHAIN);
-    let size = field_size(kind.first_node, words.x);
-    let speed = f32(size.y) * FIELD_RATE_STEP * kind.period;
-    let drift = field_carried(speed).drift;
-    let fallen = field_fallen(size.y, field_frame.seconds, field_frame.fraction, field_frame.is_before);
-    // Height of the drop 0 above the eye, in periods.
-    let above = field_less(field_less(vec2u(0u, words.y), fallen), kind.eye_periods);
-    let part = f32(above.y >> 8u) * (FIELD_FRACTION_STEP * 256.0);
-    let heights = (kind.heights - drift.y) / kind.period - part;
-    for (var k = i32(ceil(heights.x)); k <= i32(floor(heights.y)); k += 1) {
-        let number = u32(k) - above.x;
-        if !field_falls(kind, key, index, number, words.y, size) {
+fn bounce_find_chain(column: FieldColumn, chain: FieldChain) {
+    for (var place = chain.places.x; place <= chain.places.y; place += 1) {
+        if !field_falls(column, chain, u32(place) - chain.above) {
             continue;
         }
-        let place = rng_draw(key, index, number, FIELD_PLACE);
-        let chance = rng_unit(rng_draw(place.wz, 0u, 0u, BOUNCE_CHANCE).x);
-        if chance >= bounce_frame.chance {
-            continue;
+        let drop = field_drop(column, chain, place);
+        // By both halves of the drop's id.
+        let chance = rng_unit(rng_draw(vec2u(drop.id_low, drop.id ^ drop.id_low), 0u, 0u, BOUNCE_CHANCE).x);
+        if chance < bounce_frame.chance {
+            bounce_find_parts(drop);
         }
-        let in_column = (vec2f(place.xy >> vec2u(8u)) + 0.5) * (FIELD_FRACTION_STEP * 256.0);
-        let aside = (vec2f(column - kind.eye_column) + (in_column - kind.eye_in_column)) * kind.edge;
-        bounce_find_parts(EyeDrop(
-            vec3f(aside.x, (f32(k) + part) * kind.period, aside.y) + drift,
-            f32(size.x) * FIELD_DIAMETER_STEP,
-            vec3f(0.0),
-            place.z ^ place.w,
-            vec2f(0.0),
-            speed,
-            place.w,
-        ));
     }
 }
 
@@ -75,17 +55,9 @@ fn main_bounce_find(@builtin(global_invocation_id) id: vec3u, @builtin(num_workg
     if index >= field_frame.columns {
         return;
     }
-    var number = 0u;
-    while number + 1u < field_frame.classes && index >= field_classes[number + 1u].first_column {
-        number += 1u;
-    }
-    let kind = field_classes[number];
-    let place = index - kind.first_column;
-    let column = kind.columns + vec2i(vec2u(place / kind.counts.y, place % kind.counts.y));
-    let words = rng_pcg4d(vec4u(vec2u(column), kind.seed));
-    let key = vec2u(words.x ^ words.z, words.y ^ words.w);
-    let count = field_count(key, kind.first_threshold, kind.portions);
+    let column = field_column(index);
+    let count = field_count(column.key, column.kind.first_threshold, column.kind.portions);
     for (var chain = invocation % BOUNCE_LANES; chain < count; chain += BOUNCE_LANES) {
-        bounce_find_chain(kind, column, key, chain);
+        bounce_find_chain(column, field_chain(column, chain));
     }
 }

@@ -101,6 +101,30 @@ struct FieldCarried {
     wind: vec3f,
 }
 
+// A column of air that may hold drops of a class, with the key of its random numbers.
+struct FieldColumn {
+    kind: FieldClass,
+    place: vec2i,
+    key: vec2u,
+}
+
+// A chain of drops of one size in a column, a period apart.
+struct FieldChain {
+    index: u32,
+    // Diameter and rate of fall, in their units.
+    size: vec2u,
+    // Where in its period the chain is at time 0.
+    phase: u32,
+    // Terminal speed, m/s.
+    speed: f32,
+    carried: FieldCarried,
+    // Drop 0 above the eye, in periods: whole ones, and the rest.
+    above: u32,
+    part: f32,
+    // First and last drop that may be shown, counted from the eye.
+    places: vec2i,
+}
+
 // Number of thresholds of a row below a number of two words, the high one first.
 fn field_reached(first: u32, word: vec2u) -> u32 {
     var low = 0u;
@@ -215,15 +239,15 @@ fn field_interval(units: u32, inverse: u32) -> vec2u {
 }
 
 // True if a drop falls: drop `number` of a chain of a phase, a diameter and a rate of fall.
-fn field_falls(kind: FieldClass, key: vec2u, index: u32, number: u32, phase: u32, size: vec2u) -> bool {
+fn field_falls(column: FieldColumn, chain: FieldChain, number: u32) -> bool {
     if field_frame.kept_row == 0u {
         return true;
     }
-    let row = field_row(size.y, field_less(vec2u(number, phase), kind.gauge));
-    let place = field_interval(max(size.x, kind.least_units) - kind.least_units, kind.kept_inverse);
-    let first = row * field_frame.kept_row + kind.first_kept + place.x;
+    let row = field_row(chain.size.y, field_less(vec2u(number, chain.phase), column.kind.gauge));
+    let place = field_interval(max(chain.size.x, column.kind.least_units) - column.kind.least_units, column.kind.kept_inverse);
+    let first = row * field_frame.kept_row + column.kind.first_kept + place.x;
     let limit = field_between(field_parts[first], field_parts[first + 1u], place.y);
-    let word = rng_draw(key, index, number, FIELD_THIN).x;
+    let word = rng_draw(column.key, chain.index, number, FIELD_THIN).x;
     return word < limit || limit == 0xffffffffu;
 }
 
@@ -279,37 +303,59 @@ fn field_meets(kind: FieldClass, column: vec2i) -> bool {
     return true;
 }
 
-// Lists the drops of a chain.
-fn field_chain(kind: FieldClass, column: vec2i, key: vec2u, index: u32) {
-    let words = rng_draw(key, index, 0u, FIELD_CHAIN);
-    let size = field_size(kind.first_node, words.x);
-    let speed = f32(size.y) * FIELD_RATE_STEP * kind.period;
+// A column that is searched, by its number.
+fn field_column(index: u32) -> FieldColumn {
+    var number = 0u;
+    while number + 1u < field_frame.classes && index >= field_classes[number + 1u].first_column {
+        number += 1u;
+    }
+    let kind = field_classes[number];
+    let nth = index - kind.first_column;
+    let place = kind.columns + vec2i(vec2u(nth / kind.counts.y, nth % kind.counts.y));
+    let words = rng_pcg4d(vec4u(vec2u(place), kind.seed));
+    return FieldColumn(kind, place, vec2u(words.x ^ words.z, words.y ^ words.w));
+}
+
+// A chain of a column.
+fn field_chain(column: FieldColumn, index: u32) -> FieldChain {
+    let words = rng_draw(column.key, index, 0u, FIELD_CHAIN);
+    let size = field_size(column.kind.first_node, words.x);
+    let speed = f32(size.y) * FIELD_RATE_STEP * column.kind.period;
     let carried = field_carried(speed);
     let fallen = field_fallen(size.y, field_frame.seconds, field_frame.fraction, field_frame.is_before);
-    // Height of the drop 0 above the eye, in periods.
-    let above = field_less(field_less(vec2u(0u, words.y), fallen), kind.eye_periods);
+    let above = field_less(field_less(vec2u(0u, words.y), fallen), column.kind.eye_periods);
     let part = f32(above.y >> 8u) * (FIELD_FRACTION_STEP * 256.0);
-    let heights = (kind.heights - carried.drift.y) / kind.period - part;
-    for (var k = i32(ceil(heights.x)); k <= i32(floor(heights.y)); k += 1) {
-        let number = u32(k) - above.x;
-        if !field_falls(kind, key, index, number, words.y, size) {
+    let heights = (column.kind.heights - carried.drift.y) / column.kind.period - part;
+    let places = vec2i(i32(ceil(heights.x)), i32(floor(heights.y)));
+    return FieldChain(index, size, words.y, speed, carried, above.x, part, places);
+}
+
+// A drop of a chain, counted from the eye.
+fn field_drop(column: FieldColumn, chain: FieldChain, place: i32) -> EyeDrop {
+    let words = rng_draw(column.key, chain.index, u32(place) - chain.above, FIELD_PLACE);
+    let in_column = (vec2f(words.xy >> vec2u(8u)) + 0.5) * (FIELD_FRACTION_STEP * 256.0);
+    let aside = (vec2f(column.place - column.kind.eye_column) + (in_column - column.kind.eye_in_column)) * column.kind.edge;
+    return EyeDrop(
+        vec3f(aside.x, (f32(place) + chain.part) * column.kind.period, aside.y) + chain.carried.drift,
+        f32(chain.size.x) * FIELD_DIAMETER_STEP,
+        chain.carried.wind - vec3f(0.0, chain.speed, 0.0),
+        words.z ^ words.w,
+        vec2f(-FIELD_ALWAYS, FIELD_ALWAYS),
+        chain.speed,
+        words.w,
+    );
+}
+
+// Lists the drops of a chain.
+fn field_list(column: FieldColumn, chain: FieldChain) {
+    for (var place = chain.places.x; place <= chain.places.y; place += 1) {
+        if !field_falls(column, chain, u32(place) - chain.above) {
             continue;
         }
-        let place = rng_draw(key, index, number, FIELD_PLACE);
-        let in_column = (vec2f(place.xy >> vec2u(8u)) + 0.5) * (FIELD_FRACTION_STEP * 256.0);
-        let aside = (vec2f(column - kind.eye_column) + (in_column - kind.eye_in_column)) * kind.edge;
-        var drop = EyeDrop(
-            vec3f(aside.x, (f32(k) + part) * kind.period, aside.y) + carried.drift,
-            f32(size.x) * FIELD_DIAMETER_STEP,
-            carried.wind - vec3f(0.0, speed, 0.0),
-            place.z ^ place.w,
-            vec2f(-FIELD_ALWAYS, FIELD_ALWAYS),
-            speed,
-            place.w,
-        );
+        var drop = field_drop(column, chain, place);
         atomicAdd(&field_found[1], 1u);
         drop.present = field_beyond(drop);
-        if drop.present.x <= drop.present.y && field_shows(drop, kind) {
+        if drop.present.x <= drop.present.y && field_shows(drop, column.kind) {
             let slot = atomicAdd(&field_found[0], 1u);
             if slot < field_frame.room {
                 field_drops[field_frame.first + slot] = drop;
@@ -335,20 +381,12 @@ fn main_field_find(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgr
     if index >= field_frame.columns {
         return;
     }
-    var number = 0u;
-    while number + 1u < field_frame.classes && index >= field_classes[number + 1u].first_column {
-        number += 1u;
-    }
-    let kind = field_classes[number];
-    let place = index - kind.first_column;
-    let column = kind.columns + vec2i(vec2u(place / kind.counts.y, place % kind.counts.y));
-    if !field_meets(kind, column) {
+    let column = field_column(index);
+    if !field_meets(column.kind, column.place) {
         return;
     }
-    let words = rng_pcg4d(vec4u(vec2u(column), kind.seed));
-    let key = vec2u(words.x ^ words.z, words.y ^ words.w);
-    let count = field_count(key, kind.first_threshold, kind.portions);
+    let count = field_count(column.key, column.kind.first_threshold, column.kind.portions);
     for (var chain = 0u; chain < count; chain += 1u) {
-        field_chain(kind, column, key, chain);
+        field_list(column, field_chain(column, chain));
     }
 }

@@ -1,15 +1,14 @@
 //! `shaders/wgsl/sim/{bounce,bounce_find,bounce_hit}.wgsl` against `downpour_sim::impacts`.
 
-use std::collections::BTreeMap;
-
-use downpour_gpu::{BufferPool, Gpu, GpuError};
+use downpour_gpu::{Gpu, GpuError};
 use downpour_shaders::Kernel;
 use downpour_shaders::sim::bounce::{
     BOUNCE, BOUNCE_CLEAR_KERNEL, BOUNCE_FIND_KERNEL, BOUNCE_HIT_AMONG_HOLES_KERNEL, BOUNCE_HIT_KERNEL,
     BOUNCE_LIST_KERNEL,
 };
+use downpour_shaders::sim::field::FIELD_BOUNCED;
 use downpour_sim::field::EyeDrop;
-use downpour_sim::gpu::{FieldPipeline, FieldSearch, GpuSimError};
+use downpour_sim::gpu::FieldSearch;
 use downpour_sim::impacts::bounce_frame::{BounceMotion, bounce_between};
 use downpour_sim::impacts::bounced::bounce_slip;
 use downpour_sim::shelter::{Holes, Obstacles};
@@ -17,7 +16,7 @@ use downpour_sim::simulation::Bounce;
 use downpour_sim::view::View;
 use glam::Vec3;
 
-use super::field::{Kind, Setting, gusty, kind, obstacles_on, run, setting, steady, still, uploaded};
+use super::field::{Kind, Setting, gusty, kind, listed_by, paired, setting, steady, still};
 use crate::Domain::Uniform;
 use crate::function::Run;
 use crate::words::IntoWords as _;
@@ -66,10 +65,6 @@ fn droplets_case(gpu: &Gpu, kind: Kind, bounce: Bounce) -> Result<Run, GpuError>
     let on_cpu = Obstacles { nodes: &scene.nodes, triangles: &scene.triangles, holes, origin };
     let fits = bounce.fits_device(&field, &view, view.least_pixels, kind.time_s, &on_cpu);
     assert!(fits, "too many parts of paths");
-    let lighting = uploaded(gpu, &scene)?;
-    let obstacles = obstacles_on(&lighting, &scene, kind.has_holes, origin);
-    let pipeline = FieldPipeline::new(gpu)?;
-    let mut on_gpu = pipeline.upload(&field)?;
     let search = FieldSearch {
         view: &view,
         time_s: kind.time_s,
@@ -79,13 +74,8 @@ fn droplets_case(gpu: &Gpu, kind: Kind, bounce: Bounce) -> Result<Run, GpuError>
         splashes: None,
         bounce: Some(&bounce),
     };
-    let pool = BufferPool::new(gpu);
-    let pass = pipeline.prepare(&pool, (&field, &mut on_gpu), &obstacles, &search);
-    let pass = pass.map_err(|error| match error {
-        GpuSimError::Gpu(error) => error,
-        other => panic!("{other}"),
-    })?;
-    let least = pass.resolved().least_pixels;
+    let (mut drops, least) = listed_by(gpu, &field, (&scene, kind.has_holes, origin), &search)?;
+    drops.retain(|drop| drop.speed == FIELD_BOUNCED);
     let outside = |drop: downpour_sim::field::FallingDrop| match kind.pane {
         Some([x, y, z, distance]) => drop.beyond(Vec3::new(x, y, z), distance, &view),
         None => Some(drop),
@@ -93,12 +83,6 @@ fn droplets_case(gpu: &Gpu, kind: Kind, bounce: Bounce) -> Result<Run, GpuError>
     let droplets = field.bounced(&on_cpu, &view, least, kind.time_s, &bounce).expect("in range");
     let expected: Vec<EyeDrop> =
         droplets.into_iter().filter_map(outside).map(|drop| EyeDrop::new(&drop, view.eye)).collect();
-    gpu.submit(&pass.dispatches())?;
-    let (drops, [found, _]) = pass.read()?;
-    assert!(found <= pass.room(), "{found} have no room");
-    let droplets = drops.iter().filter(|drop| drop.speed == 0.0);
-    let mut others: BTreeMap<(u32, u32), EyeDrop> =
-        droplets.map(|drop| ((drop.id, drop.id_low), *drop)).collect();
     assert!(expected.len() > 150, "{} droplets", expected.len());
     let finite = |time: f32| if time.abs() < 1.0e3 { time } else { 1.0e3 };
     let words = |drop: &EyeDrop| {
@@ -108,18 +92,7 @@ fn droplets_case(gpu: &Gpu, kind: Kind, bounce: Bounce) -> Result<Run, GpuError>
         let [begin, end] = drop.present.map(finite);
         [1.0, x, y, z, u, v, w, drop.diameter * 10.0, begin, end].map(f32::to_bits)
     };
-    let nothing = [0.0f32; 10].map(f32::to_bits);
-    let (mut cpu, mut gpu_words) = (Vec::new(), Vec::new());
-    for drop in &expected {
-        cpu.extend(words(drop));
-        gpu_words.extend(others.remove(&(drop.id, drop.id_low)).as_ref().map_or(nothing, words));
-    }
-    // What only the device has.
-    for drop in others.values() {
-        cpu.extend(nothing);
-        gpu_words.extend(words(drop));
-    }
-    Ok(run(10, cpu, gpu_words))
+    Ok(paired(&expected, drops, words))
 }
 
 /// The cases.

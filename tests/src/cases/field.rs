@@ -412,10 +412,6 @@ fn crowns_case(gpu: &Gpu, kind: Kind) -> Result<Run, GpuError> {
     let expected: Vec<EyeDrop> =
         crowns.iter().map(|drop| EyeDrop::new(drop, view.eye)).filter(is_outside).collect();
     assert!(expected.len() > 300, "{} crowns", expected.len());
-    let lighting = uploaded(gpu, &scene)?;
-    let obstacles = obstacles_on(&lighting, &scene, kind.has_holes, origin);
-    let pipeline = FieldPipeline::new(gpu)?;
-    let mut on_gpu = pipeline.upload(&field)?;
     let search = FieldSearch {
         view: &view,
         time_s: kind.time_s,
@@ -425,8 +421,29 @@ fn crowns_case(gpu: &Gpu, kind: Kind) -> Result<Run, GpuError> {
         splashes: Some(&options),
         bounce: None,
     };
+    let (mut drops, _) = listed_by(gpu, &field, (&scene, kind.has_holes, origin), &search)?;
+    drops.retain(|drop| drop.speed < 0.0);
+    let words = |drop: &EyeDrop| {
+        let [x, y, z] = drop.offset;
+        let [begin, end] = drop.present;
+        [1.0, x, y, z, drop.diameter * 10.0, begin, end].map(f32::to_bits)
+    };
+    Ok(paired(&expected, drops, words))
+}
+
+/// The drops that the device lists for a search, and the least size in pixels that is listed.
+pub(super) fn listed_by(
+    gpu: &Gpu,
+    field: &RainField,
+    (scene, has_holes, origin): (&SceneData, bool, DVec3),
+    search: &FieldSearch<'_>,
+) -> Result<(Vec<EyeDrop>, f64), GpuError> {
+    let lighting = uploaded(gpu, scene)?;
+    let obstacles = obstacles_on(&lighting, scene, has_holes, origin);
+    let pipeline = FieldPipeline::new(gpu)?;
+    let mut on_gpu = pipeline.upload(field)?;
     let pool = BufferPool::new(gpu);
-    let pass = pipeline.prepare(&pool, (&field, &mut on_gpu), &obstacles, &search);
+    let pass = pipeline.prepare(&pool, (field, &mut on_gpu), &obstacles, search);
     let pass = pass.map_err(|error| match error {
         GpuSimError::Gpu(error) => error,
         other => panic!("{other}"),
@@ -434,26 +451,28 @@ fn crowns_case(gpu: &Gpu, kind: Kind) -> Result<Run, GpuError> {
     gpu.submit(&pass.dispatches())?;
     let (drops, [found, _]) = pass.read()?;
     assert!(found <= pass.room(), "{found} have no room");
-    let crowns = drops.iter().filter(|drop| drop.speed < 0.0);
-    let mut others: BTreeMap<(u32, u32), EyeDrop> =
-        crowns.map(|drop| ((drop.id, drop.id_low), *drop)).collect();
-    let words = |drop: &EyeDrop| {
-        let [x, y, z] = drop.offset;
-        let [begin, end] = drop.present;
-        [1.0, x, y, z, drop.diameter * 10.0, begin, end].map(f32::to_bits)
-    };
-    let nothing = [0.0f32; 7].map(f32::to_bits);
-    let (mut cpu, mut gpu_words) = (Vec::new(), Vec::new());
-    for drop in &expected {
+    Ok((drops, pass.resolved().least_pixels))
+}
+
+/// Drops of both sides by their ids, as words; 0 where one side has none.
+pub(super) fn paired<const N: usize>(
+    expected: &[EyeDrop],
+    found: Vec<EyeDrop>,
+    words: impl Fn(&EyeDrop) -> [u32; N],
+) -> Run {
+    let id = |drop: &EyeDrop| (drop.id, drop.id_low);
+    let mut others: BTreeMap<(u32, u32), EyeDrop> = found.into_iter().map(|drop| (id(&drop), drop)).collect();
+    let (mut cpu, mut gpu) = (Vec::new(), Vec::new());
+    for drop in expected {
         cpu.extend(words(drop));
-        gpu_words.extend(others.remove(&(drop.id, drop.id_low)).as_ref().map_or(nothing, words));
+        gpu.extend(others.remove(&id(drop)).as_ref().map_or([0; N], &words));
     }
     // What only the device has.
     for drop in others.values() {
-        cpu.extend(nothing);
-        gpu_words.extend(words(drop));
+        cpu.extend([0; N]);
+        gpu.extend(words(drop));
     }
-    Ok(run(7, cpu, gpu_words))
+    run(N, cpu, gpu)
 }
 
 pub(super) fn steady() -> UniformWind {

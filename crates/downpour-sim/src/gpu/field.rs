@@ -13,6 +13,7 @@ use downpour_shaders::sim::field::{
     FIELD_CLEAR_KERNEL, FIELD_FIND_KERNEL, SHELTER_AMONG_HOLES_KERNEL, SHELTER_KERNEL,
 };
 use downpour_shaders::sim::splash::SPLASH_KERNEL;
+use downpour_wind::UniformWind;
 use glam::{DVec3, Vec3};
 
 use super::GpuSimError;
@@ -40,6 +41,17 @@ pub struct ObstaclesOnGpu<'a> {
     pub bounds: Option<[Vec3; 2]>,
     /// Origin, m.
     pub origin: DVec3,
+}
+
+impl<'a> ObstaclesOnGpu<'a> {
+    /// Their buffers, by the bindings of the kernels that ask for them.
+    fn bindings(&self) -> Vec<(u32, &'a wgpu::Buffer)> {
+        let mut bound = vec![(1, self.nodes), (2, self.triangles)];
+        if let Some(HolesOnGpu { corners, table, texels }) = self.holes {
+            bound.extend([(3, corners), (4, table), (5, texels)]);
+        }
+        bound
+    }
 }
 
 /// Holes of triangles on the device, as painted leaves have them: the buffers of a scene, in the layout of
@@ -100,11 +112,15 @@ pub struct FieldOnGpu {
     /// Times and parts of a rate that changes; one of each without.
     begins: wgpu::Buffer,
     parts: wgpu::Buffer,
-    /// Drift of drops up to whole quarters of a second, by their numbers.
-    cuts: BTreeMap<i64, Drift>,
-    /// The same up to whole sixteenths.
-    sixteenths: BTreeMap<i64, Drift>,
+    /// Drift of drops up to whole sixteenths of a second, by their numbers.
+    drifts: BTreeMap<i64, Drift>,
 }
+
+/// Times up to which drift is kept, s: the paths of drops are divided there.
+const SIXTEENTH_S: f64 = BOUNCE_SLICE as f64;
+
+/// Sixteenths of a second from one cut of a path to the sky to the next.
+const SIXTEENTHS_OF_CUT: i64 = (CUT_S / SIXTEENTH_S) as i64;
 
 /// A kernel with its bindings and its workgroups.
 type BoundKernel<'a> = (&'a ComputeKernel, wgpu::BindGroup, [u32; 3]);
@@ -181,8 +197,7 @@ impl FieldPipeline {
             parts: BufferSource::storage(&self.gpu, "parts of the drops that fall", &parts)?,
             nodes: BufferSource::storage(&self.gpu, "sizes of drops", &nodes)?,
             thresholds: BufferSource::storage(&self.gpu, "numbers of chains", &thresholds)?,
-            cuts: BTreeMap::new(),
-            sixteenths: BTreeMap::new(),
+            drifts: BTreeMap::new(),
         })
     }
 
@@ -212,10 +227,7 @@ impl FieldPipeline {
             field.query(search.view, search.time_s, search.max_room.saturating_sub(kept_free).max(1))?;
         let least_pixels = query.resolved.least_pixels;
         let bounce = bounce.map(|(bounce, bounds)| {
-            let drift_of = |number: i64| {
-                let new = || Drift::new(&field.wind, number as f64 * f64::from(BOUNCE_SLICE));
-                on.sixteenths.entry(number).or_insert_with(new).clone()
-            };
+            let drift_of = |number: i64| on.drift(&field.wind, number).clone();
             let (view, obstacles) = ((search.view, least_pixels), (bounds, obstacles.origin));
             bounce.search(field, view, search.time_s, obstacles, drift_of)
         });
@@ -258,7 +270,7 @@ impl FieldPipeline {
             }
             _ => Vec::new(),
         };
-        on.forget_before((search.time_s / CUT_S) as i64);
+        on.forget_far_from(search.time_s);
         Ok(FieldPass {
             pipeline: self,
             search: of_picture,
@@ -301,10 +313,7 @@ impl FieldPipeline {
             let (frame, drift) = shelter_frame(field, on, query, (obstacles, bounds), (view, time_s));
             let uniform = buffers.uniform("shelter frame", &frame)?;
             let drift = buffers.storage("drift of paths", &drift)?;
-            let mut bound = vec![(1, obstacles.nodes), (2, obstacles.triangles)];
-            if let Some(HolesOnGpu { corners, table, texels }) = obstacles.holes {
-                bound.extend([(3, corners), (4, table), (5, texels)]);
-            }
+            let mut bound = obstacles.bindings();
             bound.extend([(6, &uniform), (7, drops), (8, &drift)]);
             let kernel = self.shelter(obstacles.holes.is_some())?;
             shelter = Some((kernel, kernel.bind_at(gpu, bound)?, workgroups_for(room)));
@@ -349,10 +358,7 @@ impl FieldPipeline {
             (10, &rows),
             (11, &parts),
         ];
-        let mut of_hit = vec![(1, obstacles.nodes), (2, obstacles.triangles)];
-        if let Some(HolesOnGpu { corners, table, texels }) = obstacles.holes {
-            of_hit.extend([(3, corners), (4, table), (5, texels)]);
-        }
+        let mut of_hit = obstacles.bindings();
         of_hit.extend([(6, &shelter), (8, &paths), (9, &bounce_frame), (10, &rows), (11, &parts)]);
         let of_list = [(9, &bounce_frame), (11, &parts), (12, to.drops), (13, to.found)];
         let groups = workgroups_for(frame.parts);
@@ -370,13 +376,10 @@ impl FieldPipeline {
 
     /// The kernels of droplets that do not ask for obstacles: clear, find, list.
     fn bounce_kernels(&self) -> Result<&[ComputeKernel; 3], GpuError> {
-        if let Some(kernels) = self.bounce.get() {
-            return Ok(kernels);
-        }
         let kernel = |kernel| ComputeKernel::new(&self.gpu, kernel, &[]);
-        let made =
-            [kernel(&BOUNCE_CLEAR_KERNEL)?, kernel(&BOUNCE_FIND_KERNEL)?, kernel(&BOUNCE_LIST_KERNEL)?];
-        Ok(self.bounce.get_or_init(|| made))
+        made_once(&self.bounce, || {
+            Ok([kernel(&BOUNCE_CLEAR_KERNEL)?, kernel(&BOUNCE_FIND_KERNEL)?, kernel(&BOUNCE_LIST_KERNEL)?])
+        })
     }
 
     /// The kernel that follows drops and droplets among obstacles, with holes or without.
@@ -386,11 +389,7 @@ impl FieldPipeline {
         } else {
             (&self.bounce_hit, &BOUNCE_HIT_KERNEL)
         };
-        if let Some(kernel) = kept.get() {
-            return Ok(kernel);
-        }
-        let made = ComputeKernel::new(&self.gpu, kernel, &[])?;
-        Ok(kept.get_or_init(|| made))
+        made_once(kept, || ComputeKernel::new(&self.gpu, kernel, &[]))
     }
 
     /// The kernel that asks for obstacles, with holes or without.
@@ -398,12 +397,17 @@ impl FieldPipeline {
         if !has_holes {
             return Ok(&self.shelter);
         }
-        if let Some(kernel) = self.among_holes.get() {
-            return Ok(kernel);
-        }
-        let made = ComputeKernel::new(&self.gpu, &SHELTER_AMONG_HOLES_KERNEL, &[])?;
-        Ok(self.among_holes.get_or_init(|| made))
+        made_once(&self.among_holes, || ComputeKernel::new(&self.gpu, &SHELTER_AMONG_HOLES_KERNEL, &[]))
     }
+}
+
+/// What is made when it is first asked for.
+fn made_once<T>(kept: &OnceLock<T>, make: impl FnOnce() -> Result<T, GpuError>) -> Result<&T, GpuError> {
+    if let Some(known) = kept.get() {
+        return Ok(known);
+    }
+    let made = make()?;
+    Ok(kept.get_or_init(|| made))
 }
 
 /// The frame of the search for what obstacles stop, and the drift of paths relative to that up to the picture's time.
@@ -420,16 +424,13 @@ fn shelter_frame(
     let height = f64::from(high.y) + obstacles.origin.y - query.deepest;
     let cuts = number_of_cuts(&field.wind, height, query.slowest) as i64;
     let numbers = last as i64 - cuts + 1..=last as i64;
-    for number in numbers.clone() {
-        on.cuts.entry(number).or_insert_with(|| Drift::new(&field.wind, number as f64 * CUT_S));
-    }
     let open = Drift::new(&field.wind, open_s);
     let row = |drift: &Drift| -> Vec<[f32; 4]> {
         let pairs = drift.entries().zip(query.now.entries());
         pairs.map(|(then, now)| (then[0] - now[0]).as_vec3().extend(0.0).to_array()).collect()
     };
     let mut drift = row(&open);
-    drift.extend(numbers.rev().filter_map(|number| on.cuts.get(&number)).flat_map(row));
+    drift.extend(numbers.rev().flat_map(|number| row(on.drift(&field.wind, number * SIXTEENTHS_OF_CUT))));
     let frame = ShelterFrame {
         eye: (view.eye - obstacles.origin).as_vec3(),
         half_shutter: half as f32,
@@ -446,13 +447,16 @@ fn shelter_frame(
 }
 
 impl FieldOnGpu {
-    /// Forgets the drift that no picture near a quarter of a second needs.
-    fn forget_before(&mut self, quarter: i64) {
-        let longest = (MAX_BACK_S / CUT_S) as i64 + 8;
-        self.cuts.retain(|number, _| (quarter - longest..quarter + 8).contains(number));
-        // Droplets and exposures of 10 s at most.
-        let sixteenths = 4 * (quarter - 88)..4 * (quarter + 8);
-        self.sixteenths.retain(|number, _| sixteenths.contains(number));
+    /// Drift of drops in a wind up to a whole sixteenth of a second, by its number.
+    fn drift(&mut self, wind: &UniformWind, number: i64) -> &Drift {
+        self.drifts.entry(number).or_insert_with(|| Drift::new(wind, number as f64 * SIXTEENTH_S))
+    }
+
+    /// Forgets the drift that no picture near a time, s, needs.
+    fn forget_far_from(&mut self, time_s: f64) {
+        let [longest, after] = [MAX_BACK_S + 2.0, 2.0];
+        let near = [time_s - longest, time_s + after].map(|time| (time / SIXTEENTH_S) as i64);
+        self.drifts.retain(|number, _| (near[0]..near[1]).contains(number));
     }
 }
 

@@ -6,14 +6,13 @@
 //! sixteenths of a second, as on the CPU.
 
 use bytemuck::{Pod, Zeroable};
-use downpour_drop::fall_speed::{FallSpeedAir, relaxation};
+use downpour_drop::fall_speed::FallSpeedAir;
 use downpour_math::ops::f64 as ops;
 use downpour_shaders::sim::bounce::{BOUNCE_SLICE, BOUNCE_STEP};
 use downpour_shaders::sim::field::FIELD_SIDES;
 use glam::{DVec3, Vec3};
 
-use super::MAX_SPAN_S;
-use super::bounced::{Travels, leaving_speed, slip_lasts};
+use super::bounced::{Travels, leaving_speed, slip_bends, slip_lasts};
 use crate::drift::Drift;
 use crate::falling::EyeDrop;
 use crate::field::frame::{FieldQuery, field_normals};
@@ -140,11 +139,6 @@ pub fn bounce_between(before: BounceMotion, after: BounceMotion, part: f32) -> B
 }
 
 impl Bounce {
-    /// Maximum time of a droplet of a picture, s.
-    pub(crate) fn longest_s(&self, view: &View) -> f64 {
-        f64::from(self.max_time_s).min(MAX_SPAN_S - view.shutter_s)
-    }
-
     /// True if a GPU is to find the droplets of a picture at a time in s, of `least_pixels` pixels and more.
     #[must_use]
     pub fn fits_device(
@@ -186,7 +180,7 @@ impl Bounce {
                 return 0.0;
             }
             let leaves = leaving_speed(self, class.speeds[1], wind);
-            let (slip, lag) = (ops::hypot(speed, wind), relaxation(speed).horizontal_s.max(1.0e-9));
+            let slip = ops::hypot(speed, wind);
             // Of the obstacles, with the way of a drop in a part.
             let height = f64::from(high.y - low.y) + SLICE_S * (class.speeds[1] + 0.2 * wind);
             let constant = 0.5 * SLICE_S * (class.speeds[1] + speed + 0.2 * wind)
@@ -194,10 +188,9 @@ impl Bounce {
                 + SLACK_M[0]
                 + class.largest;
             let of_part = |k: i64| {
-                let [old, young] = [first + k, first + k + 1]
-                    .map(|k| slip_lasts((time_s - k as f64 * SLICE_S).max(0.0), speed));
-                let bent = slip * (old - young) * (0.125 * SLICE_S / lag).min(1.0);
-                let radius = constant + leaves * old + bent;
+                let ages =
+                    [first + k + 1, first + k].map(|number| (time_s - number as f64 * SLICE_S).max(0.0));
+                let radius = constant + leaves * slip_lasts(ages[1], speed) + slip * slip_bends(ages, speed);
                 let reach = range + radius;
                 view.near_volume(range, radius).min(std::f64::consts::PI * reach * reach * height)
             };
@@ -297,6 +290,7 @@ impl Bounce {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use downpour_drop::fall_speed::relaxation;
     use downpour_wind::{Gusts, Keyed, Wind, WindPart};
 
     /// Largest errors of the cubic between rows, m and m/s, of drops that follow the wind within `tau` s, in a sixteenth of a second.

@@ -55,7 +55,7 @@ impl RainField {
             return Ok(Vec::new());
         }
         let half = 0.5 * view.shutter_s;
-        let longest = f64::from(bounce.max_time_s).min(MAX_SPAN_S - view.shutter_s);
+        let longest = bounce.longest_s(view);
         let sent_up = |id: u64| {
             let [chance, ..] = rng_draw([id as u32, (id >> 32) as u32], 0, 0, BOUNCE_CHANCE).map(rng_unit);
             chance < bounce.fraction
@@ -160,7 +160,6 @@ impl Travels {
         let (carried, fall) = (now.of(speed)[0], DVec3::Y * speed);
         let wind = oldest.of(drop.speed)[1].length().max(now.of(drop.speed)[1].length());
         let leaves = leaving_speed(bounce, drop.speed, wind);
-        let lasts = self.ages.map(|age| slip_lasts(age, speed));
         // The slip that it has from the wind and its fall, as if it left the surface at rest; the path of the drop is a line.
         let from = [(0, oldest, 1), (1, youngest, 0)].map(|(end, then, age)| {
             let [displacement, velocity] = then.of(speed);
@@ -169,10 +168,8 @@ impl Travels {
             (drop.ends[end] + carried - displacement - fall * self.ages[age] + moved, slip)
         });
         let slip = from[0].1.length().max(from[1].1.length());
-        let across = relaxation(speed).horizontal_s.max(1.0e-9);
-        // An exponential is as far from its chord.
-        let bent = slip * (lasts[1] - lasts[0]) * (0.125 * (self.ages[1] - self.ages[0]) / across).min(1.0);
-        let radius = 0.5 * from[0].0.distance(from[1].0) + bent + leaves * lasts[1];
+        let bent = slip_bends(self.ages, speed) * slip;
+        let radius = 0.5 * from[0].0.distance(from[1].0) + bent + leaves * slip_lasts(self.ages[1], speed);
         (from[0].0.midpoint(from[1].0), radius)
     }
 
@@ -223,8 +220,27 @@ pub(super) fn leaving_speed(bounce: &Bounce, speed: f64, wind: f64) -> f64 {
 
 /// Seconds for which the slip of a droplet with a terminal speed counts up to an age, s, across the fall.
 pub(super) fn slip_lasts(age_s: f64, speed: f64) -> f64 {
-    let time = relaxation(speed).horizontal_s.max(1.0e-9);
+    let time = slip_time(speed);
     time * (1.0 - ops::exp(-age_s / time))
+}
+
+/// Seconds in which the slip of a droplet with a terminal speed relaxes across the fall.
+fn slip_time(speed: f64) -> f64 {
+    relaxation(speed).horizontal_s.max(BOUNCE_MIN_RELAXATION.into())
+}
+
+/// Maximum distance, per slip in m/s, of the way by the slip from a line between two ages, s, the smaller first.
+pub(super) fn slip_bends(ages: [f64; 2], speed: f64) -> f64 {
+    let [young, old] = ages.map(|age| slip_lasts(age, speed));
+    // An exponential is as far from its chord.
+    (old - young) * (0.125 * (ages[1] - ages[0]) / slip_time(speed)).min(1.0)
+}
+
+impl Bounce {
+    /// Maximum time of a droplet of a picture, s.
+    pub(super) fn longest_s(&self, view: &View) -> f64 {
+        f64::from(self.max_time_s).min(MAX_SPAN_S - view.shutter_s)
+    }
 }
 
 /// Where the droplets of a class that a picture shows come from.
