@@ -1,22 +1,19 @@
 //! A bounding volume hierarchy over triangles, and the nearest hit of a ray.
 //!
-//! The hierarchy is built by the surface area heuristic with 16 bins per axis (I. Wald, "On fast construction of
-//! SAH-based bounding volume hierarchies", 2007). The two children of a node are neighbors in memory, so that a ray
-//! meets both with one access; leaves refer to a reordered list of triangles. The build depends on the triangles only, so
-//! the same mesh gives the same tree.
+//! [`Bvh::new`] builds it from the triangles' corners; [`bvh_hit`] finds what a ray meets first, [`bvh_blocker`] whether it meets
+//! anything, as shadows ask. The two children of a node are neighbors in memory, so that a ray meets both with one access; leaves
+//! refer to a reordered list of triangles. The build depends on the triangles only: the same mesh gives the same tree.
 //!
-//! Twin of the traversal in `shaders/wgsl/bvh/bvh.wgsl`.
+//! Twin of the walk in `shaders/wgsl/bvh/bvh.wgsl`.
 
+mod bounds;
+mod build;
+
+use bounds::Bounds;
 use downpour_math::vector::{cross, dot, sub};
 use downpour_shaders::bvh::{BVH_FAR, BVH_STACK};
 use glam::Vec3A;
 
-/// Triangle count up to which a node stays a leaf.
-const LEAF: usize = 4;
-/// Depth from which nodes are split into halves.
-const HEURISTIC_DEPTH: usize = 24;
-/// Number of bins per axis.
-const BINS: usize = 16;
 /// Barycentric slack: a ray through a shared edge must not slip between the two triangles.
 const EDGE_SLACK: f32 = downpour_shaders::bvh::BVH_EDGE_SLACK;
 
@@ -45,12 +42,12 @@ pub struct BvhTriangle {
     pub index: u32,
     /// Second corner minus the first.
     pub edge_1: [f32; 3],
-    /// Padding of the WGSL layout.
-    pub padding_1: u32,
+    /// 0 if nothing passes through; else a ray may, as through a leaf's holes or a pane of glass, and whoever casts it looks closer.
+    pub lets_through: u32,
     /// Third corner minus the first.
     pub edge_2: [f32; 3],
     /// Padding of the WGSL layout.
-    pub padding_2: u32,
+    pub padding: u32,
 }
 
 impl BvhTriangle {
@@ -84,90 +81,43 @@ pub struct Bvh {
     pub triangles: Vec<BvhTriangle>,
 }
 
-#[derive(Clone, Copy, PartialEq)]
-struct Bounds {
-    low: [f32; 3],
-    high: [f32; 3],
-}
-
-impl Bounds {
-    const NONE: Self = Self { low: [f32::INFINITY; 3], high: [f32::NEG_INFINITY; 3] };
-
-    fn with(self, point: [f32; 3]) -> Self {
-        Self {
-            low: std::array::from_fn(|k| self.low[k].min(point[k])),
-            high: std::array::from_fn(|k| self.high[k].max(point[k])),
-        }
-    }
-
-    fn union(self, other: Self) -> Self {
-        self.with(other.low).with(other.high)
-    }
-
-    /// What two boxes share, which may be flat.
-    fn common(self, other: &Self) -> Option<Self> {
-        let low: [f32; 3] = std::array::from_fn(|k| self.low[k].max(other.low[k]));
-        let high: [f32; 3] = std::array::from_fn(|k| self.high[k].min(other.high[k]));
-        (0..3).all(|k| low[k] <= high[k]).then_some(Self { low, high })
-    }
-
-    /// Half of the surface area; 0 for an empty box.
-    fn area(self) -> f32 {
-        let [x, y, z] = std::array::from_fn(|k| (self.high[k] - self.low[k]).max(0.0));
-        x * y + y * z + z * x
-    }
-}
-
-/// A triangle during the build.
-#[derive(Clone, Copy)]
-struct Item {
-    bounds: Bounds,
-    middle: [f32; 3],
-    index: u32,
-}
-
 impl Bvh {
-    /// Builds the hierarchy over triangles given by their corners.
-    #[must_use]
-    pub fn new(corners: &[[[f32; 3]; 3]]) -> Self {
-        let mut items: Vec<Item> = (0u32..)
-            .zip(corners)
-            .map(|(index, triangle)| {
-                let bounds = triangle.iter().fold(Bounds::NONE, |b, &p| b.with(p));
-                let middle = std::array::from_fn(|k| 0.5 * (bounds.low[k] + bounds.high[k]));
-                Item { bounds, middle, index }
-            })
-            .collect();
-        let mut nodes = Vec::with_capacity(2 * items.len() / LEAF + 2);
-        nodes.push(EMPTY);
-        build(&mut items, 0, 0, 0, &mut nodes);
-        let triangles = items
-            .iter()
-            .map(|item| {
-                let [a, b, c] = corners[item.index as usize];
-                BvhTriangle {
-                    corner: a,
-                    index: item.index,
-                    edge_1: sub(b, a),
-                    padding_1: 0,
-                    edge_2: sub(c, a),
-                    padding_2: 0,
-                }
-            })
-            .collect();
-        Self { nodes, triangles }
-    }
-
     /// Nearest hit along the ray that is farther than `nearest`.
     #[must_use]
     pub fn hit(&self, origin: [f32; 3], direction: [f32; 3], nearest: f32) -> Option<Hit> {
-        bvh_nearest(&self.nodes, &self.triangles, origin, direction, nearest, BVH_FAR)
+        bvh_hit(&self.nodes, &self.triangles, origin, direction, nearest, BVH_FAR)
     }
 }
 
 /// Nearest hit along the ray that is farther than `nearest` and nearer than `farthest`, in the arrays of a [`Bvh`].
 #[must_use]
-pub fn bvh_nearest(
+pub fn bvh_hit(
+    nodes: &[BvhNode],
+    triangles: &[BvhTriangle],
+    origin: [f32; 3],
+    direction: [f32; 3],
+    nearest: f32,
+    farthest: f32,
+) -> Option<Hit> {
+    bvh_walk::<false>(nodes, triangles, origin, direction, nearest, farthest)
+}
+
+/// What is in the way of a ray between two distances, in the arrays of a [`Bvh`]: any hit of a triangle through which nothing passes, or
+/// the nearest hit of all if its triangle [lets rays through](BvhTriangle::lets_through); what is behind the latter may be left out.
+#[must_use]
+pub fn bvh_blocker(
+    nodes: &[BvhNode],
+    triangles: &[BvhTriangle],
+    origin: [f32; 3],
+    direction: [f32; 3],
+    nearest: f32,
+    farthest: f32,
+) -> Option<Hit> {
+    bvh_walk::<true>(nodes, triangles, origin, direction, nearest, farthest)
+}
+
+/// The nearest hit between two distances or, if `ANY`, the first that is found of a triangle through which nothing passes.
+fn bvh_walk<const ANY: bool>(
     nodes: &[BvhNode],
     triangles: &[BvhTriangle],
     origin: [f32; 3],
@@ -210,6 +160,9 @@ pub fn bvh_nearest(
                 if distance > nearest && distance < limit {
                     limit = distance;
                     best = Some(Hit { distance, triangle: triangle.index, u, v });
+                    if ANY && triangle.lets_through == 0 {
+                        return best;
+                    }
                 }
             }
         }
@@ -315,85 +268,6 @@ pub fn bvh_triangle(triangle: &BvhTriangle, origin: [f32; 3], direction: [f32; 3
     if inside { [dot(triangle.edge_2, q) * inverse, u, v] } else { [-1.0, 0.0, 0.0] }
 }
 
-/// A node that holds nothing.
-const EMPTY: BvhNode = BvhNode { low: [0.0; 3], link: 0, high: [0.0; 3], count: 0 };
-
-/// Makes node `at` the root of the subtree over `items`, which start at index `first` of the whole list.
-fn build(items: &mut [Item], first: usize, at: usize, depth: usize, nodes: &mut Vec<BvhNode>) {
-    let bounds = items.iter().fold(Bounds::NONE, |b, item| b.union(item.bounds));
-    nodes[at] = BvhNode { low: bounds.low, link: first as u32, high: bounds.high, count: items.len() as u32 };
-    // The stack of the traversal holds one node per level.
-    let deepest = depth + 2 >= BVH_STACK as usize;
-    let cut = match () {
-        () if items.len() <= LEAF || deepest => None,
-        // Deep in the tree, halving ends sooner than splits that take off one triangle at a time.
-        () if depth >= HEURISTIC_DEPTH => halve(items),
-        () => split(items).or_else(|| halve(items)),
-    };
-    let Some(split) = cut else { return };
-    let child = nodes.len().next_multiple_of(2);
-    nodes.resize(child + 2, EMPTY);
-    (nodes[at].count, nodes[at].link) = (0, child as u32);
-    let (left, right) = items.split_at_mut(split);
-    build(left, first, child, depth + 1, nodes);
-    build(right, first + split, child + 1, depth + 1, nodes);
-}
-
-/// Reorders `items` and returns the split index.
-fn split(items: &mut [Item]) -> Option<usize> {
-    let middles = items.iter().fold(Bounds::NONE, |b, item| b.with(item.middle));
-    let mut best = (f32::INFINITY, 0, 0);
-    for axis in 0..3 {
-        let extent = middles.high[axis] - middles.low[axis];
-        if extent <= 0.0 {
-            continue;
-        }
-        let mut bins = [(Bounds::NONE, 0usize); BINS];
-        for item in items.iter() {
-            let bin = &mut bins[bin_of(item, axis, middles.low[axis], extent)];
-            *bin = (bin.0.union(item.bounds), bin.1 + 1);
-        }
-        for cut in 1..BINS {
-            let side = |bins: &[(Bounds, usize)]| {
-                let (bounds, n) =
-                    bins.iter().fold((Bounds::NONE, 0), |(b, n), bin| (b.union(bin.0), n + bin.1));
-                (bounds.area() * n as f32, n)
-            };
-            let ((left, in_left), (right, in_right)) = (side(&bins[..cut]), side(&bins[cut..]));
-            // A split with an empty side is not allowed, however cheap.
-            if in_left > 0 && in_right > 0 && left + right < best.0 {
-                best = (left + right, axis, cut);
-            }
-        }
-    }
-    let (cost, axis, cut) = best;
-    if cost.is_infinite() {
-        return None;
-    }
-    let extent = middles.high[axis] - middles.low[axis];
-    // A stable order keeps the tree independent of the sort algorithm.
-    items.sort_by_key(|item| bin_of(item, axis, middles.low[axis], extent) >= cut);
-    let split = items.partition_point(|item| bin_of(item, axis, middles.low[axis], extent) < cut);
-    (split > 0 && split < items.len()).then_some(split)
-}
-
-/// Sorts `items` along their longest axis and splits them in half; `None` if all are at one point.
-fn halve(items: &mut [Item]) -> Option<usize> {
-    let middles = items.iter().fold(Bounds::NONE, |b, item| b.with(item.middle));
-    let extent = |axis: usize| middles.high[axis] - middles.low[axis];
-    let axis = (0..3).max_by(|&a, &b| extent(a).total_cmp(&extent(b)))?;
-    if extent(axis) <= 0.0 {
-        return None;
-    }
-    // Ties are broken by the index, so that the order does not depend on the sort algorithm.
-    items.sort_by(|a, b| a.middle[axis].total_cmp(&b.middle[axis]).then(a.index.cmp(&b.index)));
-    Some(items.len() / 2)
-}
-
-fn bin_of(item: &Item, axis: usize, low: f32, extent: f32) -> usize {
-    (((item.middle[axis] - low) / extent * BINS as f32) as usize).min(BINS - 1)
-}
-
 /// Compiles the examples of the README as doctests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
@@ -402,6 +276,7 @@ struct ReadmeExamples;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::build::LEAF;
     use downpour_math::rng::{rng_draw, rng_unit};
 
     fn soup(n: u32) -> Vec<[[f32; 3]; 3]> {
@@ -416,32 +291,119 @@ mod tests {
             .collect()
     }
 
+    /// Rays through a box: in all directions, some along an axis, for which the walk divides by zero.
+    fn rays(n: u32, low: f32, high: f32) -> impl Iterator<Item = ([f32; 3], [f32; 3])> {
+        (0..n).map(move |i| {
+            let [a, b] = [0, 1].map(|k| rng_draw([5, 6], i, k, 0).map(rng_unit));
+            let origin = std::array::from_fn(|k| low + (high - low) * a[k]);
+            let mut direction: [f32; 3] = std::array::from_fn(|k| b[k] - 0.5);
+            if i % 3 == 0 {
+                direction[(i % 2) as usize] = 0.0;
+            }
+            (origin, direction)
+        })
+    }
+
+    /// Distances and triangles of all hits beyond one, the nearest first.
+    fn brute_force(bvh: &Bvh, (origin, direction): ([f32; 3], [f32; 3]), nearest: f32) -> Vec<(f32, BvhTriangle)> {
+        let of = |t: &BvhTriangle| (bvh_triangle(t, origin, direction)[0], *t);
+        let mut all: Vec<_> = bvh.triangles.iter().map(of).filter(|hit| hit.0 > nearest).collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        all
+    }
+
     /// The tree finds the same hit as a loop over all triangles.
     #[test]
     fn nearest_hit_is_that_of_brute_force() {
-        let corners = soup(800);
-        let bvh = Bvh::new(&corners);
+        let bvh = Bvh::new(&soup(800));
         let mut hits = 0;
-        for i in 0..3000 {
-            let a = rng_draw([5, 6], i, 0, 0).map(rng_unit);
-            let b = rng_draw([5, 6], i, 1, 0).map(rng_unit);
-            let origin = std::array::from_fn(|k| a[k] * 6.0 - 1.0);
-            let mut direction: [f32; 3] = std::array::from_fn(|k| b[k] - 0.5);
-            if i % 3 == 0 {
-                // Rays along an axis divide by zero.
-                direction[(i % 2) as usize] = 0.0;
-            }
-            let brute = bvh
-                .triangles
-                .iter()
-                .map(|t| (bvh_triangle(t, origin, direction), t.index))
-                .filter(|(h, _)| h[0] > 1.0e-4)
-                .min_by(|x, y| x.0[0].total_cmp(&y.0[0]));
-            let found = bvh.hit(origin, direction, 1.0e-4);
-            assert_eq!(found.map(|h| h.distance), brute.map(|(h, _)| h[0]), "ray {i}");
+        for ray in rays(3000, -1.0, 5.0) {
+            let expected = brute_force(&bvh, ray, 1.0e-4).first().map(|hit| hit.0);
+            let found = bvh.hit(ray.0, ray.1, 1.0e-4);
+            assert_eq!(found.map(|h| h.distance), expected, "{ray:?}");
             hits += u32::from(found.is_some());
         }
         assert!(hits > 300, "only {hits} rays hit anything");
+    }
+
+    /// What blocks a ray is found where there is something: any triangle through which nothing passes, or what is nearest.
+    #[test]
+    fn a_blocker_is_one_of_all_hits() {
+        let mut bvh = Bvh::new(&soup(800));
+        for triangle in &mut bvh.triangles {
+            triangle.lets_through = u32::from(triangle.index % 2 == 0);
+        }
+        let (mut solid, mut open, mut nearer) = (0, 0, 0);
+        for ray in rays(3000, -1.0, 5.0) {
+            let farthest = 8.0;
+            let found = bvh_blocker(&bvh.nodes, &bvh.triangles, ray.0, ray.1, 1.0e-4, farthest);
+            let mut all = brute_force(&bvh, ray, 1.0e-4);
+            all.retain(|hit| hit.0 < farthest);
+            let solids: Vec<_> = all.iter().filter(|hit| hit.1.lets_through == 0).collect();
+            match found {
+                None => assert!(all.is_empty(), "{ray:?}"),
+                Some(hit) => {
+                    let is_hit = |one: &&(f32, BvhTriangle)| one.1.index == hit.triangle && one.0 == hit.distance;
+                    let is_solid = solids.iter().any(|one| is_hit(one));
+                    assert!(is_solid || is_hit(&&all[0]), "{ray:?}: {hit:?}");
+                    solid += u32::from(is_solid);
+                    open += u32::from(!is_solid);
+                    nearer += u32::from(hit.distance > all[0].0);
+                }
+            }
+        }
+        assert!(solid > 300 && open > 30 && nearer > 30, "{solid} solid, {open} open, {nearer} not the nearest");
+    }
+
+    /// Depth of a tree.
+    fn depth(bvh: &Bvh) -> usize {
+        let mut deepest = 0;
+        let mut stack = vec![(0, 0)];
+        while let Some((at, depth)) = stack.pop() {
+            let node = &bvh.nodes[at as usize];
+            deepest = deepest.max(depth);
+            if node.count == 0 && node.link > 0 {
+                stack.extend([(node.link, depth + 1), (node.link + 1, depth + 1)]);
+            }
+        }
+        deepest
+    }
+
+    /// Triangles one within another, each larger than the last, make a chain; the walk's stack has room for all of it.
+    #[test]
+    fn a_chain_is_no_deeper_than_the_stack() {
+        let corners: Vec<[[f32; 3]; 3]> = (0..700)
+            .map(|i| {
+                let size = 1.08f32.powi(i);
+                [[-size, 0.0, -size], [size, 0.1 * size, -size], [0.0, -0.1 * size, size]]
+            })
+            .collect();
+        let bvh = Bvh::new(&corners);
+        assert!(depth(&bvh) + 2 <= BVH_STACK as usize, "{} levels", depth(&bvh));
+        for ray in rays(300, -100.0, 100.0) {
+            let expected = brute_force(&bvh, ray, 1.0e-4).first().map(|hit| hit.0);
+            let found = bvh.hit(ray.0, ray.1, 1.0e-4);
+            assert_eq!(found.map(|h| h.distance), expected, "{ray:?}");
+        }
+    }
+
+    /// Corners that are huge or no numbers do no harm, and what is beside them is found.
+    #[test]
+    fn strange_corners_do_no_harm() {
+        let mut corners = soup(400);
+        for (i, strange) in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1.0e30, f32::MAX].into_iter().enumerate() {
+            corners[7 * i][i % 3][i % 2] = strange;
+        }
+        for all in [&corners[..], &corners[..36], &corners[..1]] {
+            let bvh = Bvh::new(all);
+            assert_eq!(bvh.triangles.len(), all.len());
+            let beside = |hit: &&(f32, BvhTriangle)| hit.1.corners().as_flattened().iter().all(|c| c.abs() < 100.0);
+            for ray in rays(500, -1.0, 5.0) {
+                let expected = brute_force(&bvh, ray, 1.0e-4).iter().find(beside).map(|hit| hit.0);
+                let found = bvh.hit(ray.0, ray.1, 1.0e-4).map(|hit| hit.distance);
+                assert!(expected.is_none() || found <= expected && found.is_some(), "{ray:?}: {found:?} {expected:?}");
+            }
+        }
     }
 
     #[test]

@@ -12,7 +12,7 @@
 //! Surfaces may have holes, as the cards with painted leaves ([`Holes`]): rain falls through them. All other surfaces
 //! stop drops, even transparent ones: a pane of glass is a roof.
 
-use downpour_bvh::{BvhNode, BvhTriangle, Hit, bvh_nearest};
+use downpour_bvh::{BvhNode, BvhTriangle, Hit, bvh_blocker, bvh_hit};
 use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_shaders::sim::field::{SHELTER_CARRIED, SHELTER_CLEAR, SHELTER_CUT, SHELTER_HOLES};
 use downpour_wind::UniformWind;
@@ -31,7 +31,8 @@ pub(crate) const MAX_BACK_S: f64 = 120.0;
 /// Distance from a surface below which a drop counts as on it, m.
 const CLEAR_M: f32 = SHELTER_CLEAR;
 
-/// Holes in triangles of the list, as by the alpha of a texture.
+/// Holes in triangles of the list, as by the alpha of a texture. A triangle with holes is marked as one that
+/// [lets rays through](BvhTriangle::lets_through).
 pub trait Holes: std::fmt::Debug + Sync {
     /// True if there is a hole at a hit.
     fn is_hole(&self, hit: &Hit) -> bool;
@@ -184,15 +185,32 @@ pub(crate) fn met(obstacles: &Obstacles<'_>, from: Vec3, velocity: Vec3, time_s:
 /// True if nothing is hit within a distance.
 fn shelter_clear(obstacles: &Obstacles<'_>, from: Vec3, direction: Vec3, distance: f32) -> bool {
     let far = distance.min(downpour_shaders::bvh::BVH_FAR);
-    shelter_hit(obstacles, from, direction, CLEAR_M, far).is_none()
+    shelter_blocker(obstacles, from, direction, CLEAR_M, far).is_none()
 }
 
 /// Nearest hit that is not a hole, at a distance from `near` to `far` times the length of `way`.
-fn shelter_hit(obstacles: &Obstacles<'_>, from: Vec3, way: Vec3, mut near: f32, far: f32) -> Option<Hit> {
+fn shelter_hit(obstacles: &Obstacles<'_>, from: Vec3, way: Vec3, near: f32, far: f32) -> Option<Hit> {
+    shelter_walk::<false>(obstacles, from, way, near, far)
+}
+
+/// Any hit that is not a hole, at a distance from `near` to `far` times the length of `way`.
+fn shelter_blocker(obstacles: &Obstacles<'_>, from: Vec3, way: Vec3, near: f32, far: f32) -> Option<Hit> {
+    shelter_walk::<true>(obstacles, from, way, near, far)
+}
+
+/// The nearest hit that is not a hole or, if `ANY`, any.
+fn shelter_walk<const ANY: bool>(
+    obstacles: &Obstacles<'_>,
+    from: Vec3,
+    way: Vec3,
+    mut near: f32,
+    far: f32,
+) -> Option<Hit> {
     let (origin, direction) = (from.to_array(), way.to_array());
+    let walk = if ANY { bvh_blocker } else { bvh_hit };
     let step = CLEAR_M / way.length().max(CLEAR_M);
     for _ in 0..SHELTER_HOLES {
-        let hit = bvh_nearest(obstacles.nodes, obstacles.triangles, origin, direction, near, far)?;
+        let hit = walk(obstacles.nodes, obstacles.triangles, origin, direction, near, far)?;
         if !obstacles.holes.is_some_and(|holes| holes.is_hole(&hit)) {
             return Some(hit);
         }

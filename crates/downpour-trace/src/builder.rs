@@ -164,6 +164,8 @@ impl SceneBuilder {
                 corners.push(corner);
             }
             triangle.index = leaf;
+            let material = self.corners[index][0].material.min(last_material);
+            triangle.lets_through = u32::from(self.materials[material as usize].lets_through());
             match owners.get(&index) {
                 Some(&lamp) => glass.entry(lamp).or_default().push(leaf),
                 None if shining.binary_search(&index).is_ok() => emitters.push(leaf),

@@ -1,6 +1,9 @@
 //! Materials and textures as rows of the scene's table. Twin of `shaders/wgsl/render/material.wgsl`.
 
-use downpour_shaders::render::scene::{SCENE_MATERIAL_ROWS, SCENE_NONE, SCENE_SLOT_ROWS, SCENE_UNLIT};
+use downpour_shaders::render::scene::{
+    SCENE_BLENDED, SCENE_LAMP_GLASS, SCENE_MASKED, SCENE_MATERIAL_ROWS, SCENE_NONE, SCENE_SLOT_ROWS, SCENE_SPOT_GLASS,
+    SCENE_UNLIT,
+};
 use glam::{Vec3, Vec4};
 
 use crate::data::SceneData;
@@ -58,6 +61,12 @@ impl Default for MaterialLook {
 }
 
 impl MaterialLook {
+    /// True if light may pass: through holes, through the surface itself, or out of a lamp's glass.
+    pub(crate) fn lets_through(&self) -> bool {
+        let flags = SCENE_MASKED | SCENE_BLENDED | SCENE_LAMP_GLASS | SCENE_SPOT_GLASS;
+        self.flags & flags != 0 || self.transmission > 0.0
+    }
+
     pub(crate) fn rows(&self, slots: u32) -> [[u32; 4]; MATERIAL_ROWS] {
         let bits = |v: [f32; 4]| v.map(f32::to_bits);
         let [r, g, b] = self.emission;

@@ -1,7 +1,7 @@
 //! Surface that a ray finds: the nearest triangle that is not a hole, and its material there. Twin of
 //! `shaders/wgsl/render/surface.wgsl`.
 
-use downpour_bvh::{Hit, bvh_nearest};
+use downpour_bvh::{Hit, bvh_blocker, bvh_hit};
 use downpour_math::ops;
 use downpour_shaders::render::scene::{
     SCENE_BLENDED, SCENE_LAYERS, SCENE_MASKED, SCENE_NONE, SCENE_UNLIT, SURFACE_DENSE, SURFACE_OPEN,
@@ -112,16 +112,35 @@ impl SceneData {
     /// that is blended has no alpha. Twelve holes in a row end the ray.
     #[must_use]
     pub fn surface_hit(&self, origin: Vec3, direction: Vec3, nearest: f32, farthest: f32) -> Option<Hit> {
+        self.surface_walk::<false>(origin, direction, nearest, farthest)
+    }
+
+    /// Returns what is in the way of a ray up to a distance: any surface through which nothing passes, or the nearest of all if
+    /// it is one that lets light through.
+    #[must_use]
+    pub fn surface_blocker(
+        &self,
+        origin: Vec3,
+        direction: Vec3,
+        nearest: f32,
+        farthest: f32,
+    ) -> Option<Hit> {
+        self.surface_walk::<true>(origin, direction, nearest, farthest)
+    }
+
+    /// The nearest surface up to a distance or, if `ANY`, any through which nothing passes.
+    fn surface_walk<const ANY: bool>(
+        &self,
+        origin: Vec3,
+        direction: Vec3,
+        nearest: f32,
+        farthest: f32,
+    ) -> Option<Hit> {
+        let (origin, direction) = (origin.into(), direction.into());
         let mut from_distance = nearest;
         for _ in 0..SCENE_LAYERS {
-            let hit = bvh_nearest(
-                &self.nodes,
-                &self.triangles,
-                origin.into(),
-                direction.into(),
-                from_distance,
-                farthest,
-            )?;
+            let walk = if ANY { bvh_blocker } else { bvh_hit };
+            let hit = walk(&self.nodes, &self.triangles, origin, direction, from_distance, farthest)?;
             if !self.surface_is_open(&hit) {
                 return Some(hit);
             }

@@ -324,7 +324,7 @@ impl SceneView<'_> {
         let nearest = self.frame.nearest;
         let start = surface.position + surface.facet * nearest;
         let along = wet_arrival(wet.towards, surface.position + wet.shift);
-        if self.data.surface_hit(start, along, nearest, BVH_FAR).is_some() { 0.0 } else { wetness }
+        if self.data.surface_blocker(start, along, nearest, BVH_FAR).is_some() { 0.0 } else { wetness }
     }
 }
 

@@ -15,6 +15,8 @@ struct BvhTriangle {
     // Index of the triangle in the mesh.
     index: u32,
     edge_1: vec3f,
+    // 0 if nothing passes through; else a ray may, as through a leaf's holes or a pane of glass.
+    lets_through: u32,
     edge_2: vec3f,
 }
 
@@ -78,6 +80,17 @@ var<private> bvh_enters: array<f32, BVH_STACK>;
 
 // Nearest hit along the ray that is farther than `nearest` and nearer than `farthest`.
 fn bvh_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> BvhHit {
+    return bvh_walk(origin, direction, nearest, farthest, false);
+}
+
+// What is in the way of a ray between two distances: any hit of a triangle through which nothing passes, or the nearest hit of all if
+// its triangle lets rays through; what is behind the latter may be left out.
+fn bvh_blocker(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> BvhHit {
+    return bvh_walk(origin, direction, nearest, farthest, true);
+}
+
+// The nearest hit between two distances or, if `any`, the first that is found of a triangle through which nothing passes.
+fn bvh_walk(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32, any: bool) -> BvhHit {
     let inverse = bvh_inverse(direction);
     var best = BvhHit(-1.0, 0u, 0.0, 0.0);
     var limit = farthest;
@@ -113,6 +126,9 @@ fn bvh_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> BvhH
                 if hit.x > nearest && hit.x < limit {
                     limit = hit.x;
                     best = BvhHit(hit.x, triangle.index, hit.y, hit.z);
+                    if any && triangle.lets_through == 0u {
+                        return best;
+                    }
                 }
             }
         }

@@ -49,7 +49,7 @@ fn medium_open_column(column: u32, row: u32) {
             let above = medium_frame.eye + direction * (begin + (before_solid - begin) * part);
             let start = select(above, medium_frame.eye, turn == 0u);
             let along = select(medium_frame.rise, direction, turn == 0u);
-            let met = surface_hit(start, along, render_frame.nearest, BVH_FAR).distance;
+            let met = surface_walk(start, along, render_frame.nearest, BVH_FAR, turn > 0u).distance;
             open = select(0.0, 1.0, met < 0.0);
             if turn == 0u && met >= 0.0 {
                 solid = met;

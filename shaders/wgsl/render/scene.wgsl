@@ -44,7 +44,7 @@ fn scene_visibility(position: vec3f, direction: vec3f, distance: f32) -> vec3f {
     var from_distance = render_frame.nearest;
     var visible = vec3f(1.0);
     for (var k = 0u; k < SCENE_LAYERS; k += 1u) {
-        let hit = surface_hit(position, direction, from_distance, distance - render_frame.nearest);
+        let hit = surface_blocker(position, direction, from_distance, distance - render_frame.nearest);
         if hit.distance < 0.0 {
             return visible;
         }

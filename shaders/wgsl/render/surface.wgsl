@@ -58,9 +58,20 @@ fn surface_is_open(hit: SurfaceHit) -> bool {
 // Returns the nearest surface up to a distance. Holes are skipped: where a masked material is below its cutoff, or one that is
 // blended has no alpha. Twelve holes in a row end the ray.
 fn surface_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> SurfaceHit {
+    return surface_walk(origin, direction, nearest, farthest, false);
+}
+
+// Returns what is in the way of a ray up to a distance: any surface through which nothing passes, or the nearest of all if it is one
+// that lets light through.
+fn surface_blocker(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> SurfaceHit {
+    return surface_walk(origin, direction, nearest, farthest, true);
+}
+
+// The nearest surface up to a distance or, if `any`, any through which nothing passes.
+fn surface_walk(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32, any: bool) -> SurfaceHit {
     var from_distance = nearest;
     for (var k = 0u; k < SCENE_LAYERS; k += 1u) {
-        let hit = bvh_hit(origin, direction, from_distance, farthest);
+        let hit = bvh_walk(origin, direction, from_distance, farthest, any);
         if hit.distance < 0.0 {
             break;
         }

@@ -109,7 +109,7 @@ fn wet_exposure(surface: Surface, wet: RenderWet) -> f32 {
         return 0.0;
     }
     let start = surface.position + surface.facet * render_frame.nearest;
-    let hit = surface_hit(start, wet_arrival(wet.towards, surface.position + wet.shift), render_frame.nearest, BVH_FAR);
+    let hit = surface_blocker(start, wet_arrival(wet.towards, surface.position + wet.shift), render_frame.nearest, BVH_FAR);
     return select(wetness, 0.0, hit.distance >= 0.0);
 }
 

@@ -12,7 +12,7 @@ fn met(a: &mut Args<'_>) -> Vec<u32> {
     let corner = a.f32s();
     let index = a.f32() as u32;
     let (edge_1, edge_2) = (a.f32s(), a.f32s());
-    let triangle = BvhTriangle { corner, index, edge_1, padding_1: 0, edge_2, padding_2: 0 };
+    let triangle = BvhTriangle { corner, index, edge_1, lets_through: 0, edge_2, padding: 0 };
     bvh_triangle(&triangle, a.f32s(), a.f32s()).words()
 }
 

@@ -133,7 +133,7 @@ fn column(a: &mut Args<'_>) -> Vec<u32> {
 
 fn triangle(args: &mut Args<'_>) -> BvhTriangle {
     let (corner, index) = (args.f32s(), args.u32());
-    BvhTriangle { corner, index, edge_1: args.f32s(), padding_1: 0, edge_2: args.f32s(), padding_2: 0 }
+    BvhTriangle { corner, index, edge_1: args.f32s(), lets_through: 0, edge_2: args.f32s(), padding: 0 }
 }
 
 /// The cases.

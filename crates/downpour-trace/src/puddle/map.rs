@@ -67,7 +67,7 @@ impl Ground {
             let Some(hit) = down else { return (f32::NAN, 0.0) };
             let height = self.reach - hit.distance;
             let over = Vec3::new(top.x, self.middle.y + height + OVER_GROUND_M, top.z);
-            let roofed = scene.surface_hit(over, Vec3::Y, 0.0, BVH_FAR).is_some();
+            let roofed = scene.surface_blocker(over, Vec3::Y, 0.0, BVH_FAR).is_some();
             (height, if roofed { 0.0 } else { 1.0 })
         };
         (0..columns * rows).into_par_iter().map(cell).unzip()

@@ -90,7 +90,7 @@ impl SceneView<'_> {
         let mut from_distance = nearest;
         let mut visible = Vec3::ONE;
         for _ in 0..SCENE_LAYERS {
-            let hit = self.data.surface_hit(position, direction, from_distance, distance - nearest);
+            let hit = self.data.surface_blocker(position, direction, from_distance, distance - nearest);
             let Some(hit) = hit else { return visible };
             let material = self.data.material_load(self.data.corners[hit.triangle as usize * 3].material);
             if material.flags & (SCENE_LAMP_GLASS | SCENE_SPOT_GLASS) != 0 {

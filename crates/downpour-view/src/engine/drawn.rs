@@ -146,7 +146,7 @@ impl Drawn {
         let data = &self.stage.data;
         let direction = direction.as_vec3().to_array();
         let hit =
-            downpour::bvh::bvh_nearest(&data.nodes, &data.triangles, origin, direction, 0.0, f32::INFINITY);
+            downpour::bvh::bvh_hit(&data.nodes, &data.triangles, origin, direction, 0.0, f32::INFINITY);
         hit.map(|hit| f64::from(hit.distance))
     }
 

@@ -3,10 +3,20 @@
 
 // First hit from a distance on that is no hole, in lengths of `way`; its distance is below 0 if there is none up to another.
 fn shelter_hit(start: vec3f, way: vec3f, near: f32, far: f32) -> BvhHit {
+    return shelter_walk(start, way, near, far, false);
+}
+
+// Any hit from a distance on that is no hole, in lengths of `way`; its distance is below 0 if there is none up to another.
+fn shelter_blocker(start: vec3f, way: vec3f, near: f32, far: f32) -> BvhHit {
+    return shelter_walk(start, way, near, far, true);
+}
+
+// The first hit that is no hole or, if `any`, any.
+fn shelter_walk(start: vec3f, way: vec3f, near: f32, far: f32, any: bool) -> BvhHit {
     let step = SHELTER_CLEAR / max(sqrt(dot(way, way)), SHELTER_CLEAR);
     var begin = near;
     for (var hole = 0u; hole < SHELTER_HOLES; hole += 1u) {
-        let hit = bvh_hit(start, way, begin, far);
+        let hit = bvh_walk(start, way, begin, far, any);
         if hit.distance < 0.0 || !surface_is_open(SurfaceHit(hit.distance, hit.triangle, hit.u, hit.v)) {
             return hit;
         }
