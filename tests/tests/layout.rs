@@ -153,7 +153,7 @@ fn hosts() -> Vec<Host> {
         host!(PuddleSeed as "PuddleSeed" in &lattice::puddle::PUDDLE_SEED,
             center, per_length, amplitude, lift, reach, shape, unused),
         host!(BvhNode as "BvhNode" in &bvh::BVH, low, link, high, count),
-        host!(BvhTriangle as "BvhTriangle" in &bvh::BVH, corner, index, edge_1, edge_2),
+        host!(BvhTriangle as "BvhTriangle" in &bvh::BVH, corner, index, edge_1, lets_through, edge_2),
         host!(CameraUniform as "SpecimenCamera" in &specimen::SPECIMEN, right, step, up, distance, back, samples),
         host!(SpecimenUniform as "SpecimenView" in &specimen::SPECIMEN,
             traced, camera, size, sky, first_row, rows, channels),

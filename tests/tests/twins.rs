@@ -57,7 +57,6 @@ const ELSEWHERE: [(&[&str], &str); 12] = [
         &["bounce_hit_part", "bounce_listed", "bounce_outside", "bounce_shows"],
         "the CPU lists droplets in f64, in the world (the loop of RainField::bounced, FallingDrop::beyond, View::shows)",
     ),
-    (&["bvh_hit"], "downpour_bvh::bvh_nearest returns an option in place of a distance below 0"),
     (&["enter_find", "enter_region"], "downpour_sim::region has the boxes as values, the GPU as rows"),
     (&["mask_model_sample"], "part of mask_model_texel in downpour_mask::model"),
     (&["path_nothing"], "the constant ViewPath::NOTHING"),
@@ -94,10 +93,7 @@ fn every_shader_function_has_a_twin_of_its_name() {
 
 /// Functions of twins that have no WGSL function of their name, and why.
 const HOST_ONLY: [(&[&str], &str); 9] = [
-    (
-        &["bvh_bounds_within", "bvh_nearest"],
-        "the walk for the CPU's callers, with an option in place of a distance below 0",
-    ),
+    (&["bvh_bounds_within"], "the walk for the CPU's callers, with an option in place of a distance below 0"),
     (
         &[
             "packing_pack_half",

@@ -85,7 +85,11 @@ fn boxes(corners: &[[[f32; 3]; 3]]) -> Vec<Aabb> {
     let scale = if largest > LARGE { LARGE / largest } else { 1.0 };
     let of = |triangle: &[[f32; 3]; 3]| {
         let [a, b, c] = triangle.map(|corner| Vec3A::from(corner) * scale);
-        if finite(triangle) { Aabb::new(a.min(b).min(c), a.max(b).max(c)) } else { Aabb::new(Vec3A::ZERO, Vec3A::ZERO) }
+        if finite(triangle) {
+            Aabb::new(a.min(b).min(c), a.max(b).max(c))
+        } else {
+            Aabb::new(Vec3A::ZERO, Vec3A::ZERO)
+        }
     };
     corners.iter().map(of).collect()
 }
@@ -157,7 +161,8 @@ impl Layout {
         let center = |index: u32| boxes[index as usize].center();
         let whole = triangles.iter().fold(Bounds::NONE, |whole, &index| whole.with(center(index).to_array()));
         let extent = |axis: usize| whole.high[axis] - whole.low[axis];
-        let axis = if extent(0) >= extent(1).max(extent(2)) { 0 } else { 1 + usize::from(extent(2) > extent(1)) };
+        let axis =
+            if extent(0) >= extent(1).max(extent(2)) { 0 } else { 1 + usize::from(extent(2) > extent(1)) };
         // Ties are broken by the index, so that the order does not depend on the sort algorithm.
         triangles.sort_by(|&a, &b| center(a)[axis].total_cmp(&center(b)[axis]).then(a.cmp(&b)));
         let child = self.children(at);

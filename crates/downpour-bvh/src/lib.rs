@@ -305,7 +305,11 @@ mod tests {
     }
 
     /// Distances and triangles of all hits beyond one, the nearest first.
-    fn brute_force(bvh: &Bvh, (origin, direction): ([f32; 3], [f32; 3]), nearest: f32) -> Vec<(f32, BvhTriangle)> {
+    fn brute_force(
+        bvh: &Bvh,
+        (origin, direction): ([f32; 3], [f32; 3]),
+        nearest: f32,
+    ) -> Vec<(f32, BvhTriangle)> {
         let of = |t: &BvhTriangle| (bvh_triangle(t, origin, direction)[0], *t);
         let mut all: Vec<_> = bvh.triangles.iter().map(of).filter(|hit| hit.0 > nearest).collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -343,7 +347,8 @@ mod tests {
             match found {
                 None => assert!(all.is_empty(), "{ray:?}"),
                 Some(hit) => {
-                    let is_hit = |one: &&(f32, BvhTriangle)| one.1.index == hit.triangle && one.0 == hit.distance;
+                    let is_hit =
+                        |one: &&(f32, BvhTriangle)| one.1.index == hit.triangle && one.0 == hit.distance;
                     let is_solid = solids.iter().any(|one| is_hit(one));
                     assert!(is_solid || is_hit(&&all[0]), "{ray:?}: {hit:?}");
                     solid += u32::from(is_solid);
@@ -352,7 +357,10 @@ mod tests {
                 }
             }
         }
-        assert!(solid > 300 && open > 30 && nearer > 30, "{solid} solid, {open} open, {nearer} not the nearest");
+        assert!(
+            solid > 300 && open > 30 && nearer > 30,
+            "{solid} solid, {open} open, {nearer} not the nearest"
+        );
     }
 
     /// Depth of a tree.
@@ -391,17 +399,23 @@ mod tests {
     #[test]
     fn strange_corners_do_no_harm() {
         let mut corners = soup(400);
-        for (i, strange) in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1.0e30, f32::MAX].into_iter().enumerate() {
+        for (i, strange) in
+            [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1.0e30, f32::MAX].into_iter().enumerate()
+        {
             corners[7 * i][i % 3][i % 2] = strange;
         }
         for all in [&corners[..], &corners[..36], &corners[..1]] {
             let bvh = Bvh::new(all);
             assert_eq!(bvh.triangles.len(), all.len());
-            let beside = |hit: &&(f32, BvhTriangle)| hit.1.corners().as_flattened().iter().all(|c| c.abs() < 100.0);
+            let beside =
+                |hit: &&(f32, BvhTriangle)| hit.1.corners().as_flattened().iter().all(|c| c.abs() < 100.0);
             for ray in rays(500, -1.0, 5.0) {
                 let expected = brute_force(&bvh, ray, 1.0e-4).iter().find(beside).map(|hit| hit.0);
                 let found = bvh.hit(ray.0, ray.1, 1.0e-4).map(|hit| hit.distance);
-                assert!(expected.is_none() || found <= expected && found.is_some(), "{ray:?}: {found:?} {expected:?}");
+                assert!(
+                    expected.is_none() || found <= expected && found.is_some(),
+                    "{ray:?}: {found:?} {expected:?}"
+                );
             }
         }
     }

@@ -185,21 +185,21 @@ pub(crate) fn met(obstacles: &Obstacles<'_>, from: Vec3, velocity: Vec3, time_s:
 /// True if nothing is hit within a distance.
 fn shelter_clear(obstacles: &Obstacles<'_>, from: Vec3, direction: Vec3, distance: f32) -> bool {
     let far = distance.min(downpour_shaders::bvh::BVH_FAR);
-    shelter_blocker(obstacles, from, direction, CLEAR_M, far).is_none()
+    shelter_hit_any(obstacles, from, direction, CLEAR_M, far).is_none()
 }
 
 /// Nearest hit that is not a hole, at a distance from `near` to `far` times the length of `way`.
 fn shelter_hit(obstacles: &Obstacles<'_>, from: Vec3, way: Vec3, near: f32, far: f32) -> Option<Hit> {
-    shelter_walk::<false>(obstacles, from, way, near, far)
+    shelter_hit_walk::<false>(obstacles, from, way, near, far)
 }
 
 /// Any hit that is not a hole, at a distance from `near` to `far` times the length of `way`.
-fn shelter_blocker(obstacles: &Obstacles<'_>, from: Vec3, way: Vec3, near: f32, far: f32) -> Option<Hit> {
-    shelter_walk::<true>(obstacles, from, way, near, far)
+fn shelter_hit_any(obstacles: &Obstacles<'_>, from: Vec3, way: Vec3, near: f32, far: f32) -> Option<Hit> {
+    shelter_hit_walk::<true>(obstacles, from, way, near, far)
 }
 
 /// The nearest hit that is not a hole or, if `ANY`, any.
-fn shelter_walk<const ANY: bool>(
+fn shelter_hit_walk<const ANY: bool>(
     obstacles: &Obstacles<'_>,
     from: Vec3,
     way: Vec3,

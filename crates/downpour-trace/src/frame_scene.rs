@@ -93,7 +93,7 @@ pub struct FrameScene {
 }
 
 impl FrameScene {
-    /// Builds the stage of a weather at a time in seconds: animated models, sky, sun, lamps, camera.
+    /// Builds the scene of a weather's frame at a time in seconds: animated models, sky, sun, lamps, camera.
     ///
     /// # Errors
     /// [`FrameSceneError::OverLimit`] above [`MAX_TRIANGLES`] or [`MAX_LIGHTS`], [`FrameSceneError::Memory`], or
@@ -155,11 +155,11 @@ impl FrameScene {
     /// [`FrameSceneError::TooFar`] over 1 km from what the buffers are relative to; as [`Viewpoint::axes`].
     pub fn seen_at(&self, weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, FrameSceneError> {
         let Some(seen) = CameraView::of(weather, loaded, &posed(loaded, time_s), time_s) else {
-            let mut stage = self.clone();
-            set_fov(&mut stage.viewpoint, weather, time_s);
-            light::relight(&mut stage.data, weather, loaded, self.origin, time_s);
-            stage.data.set_wetness(SceneWetness::of(weather, time_s, self.origin).as_ref());
-            return Ok(stage);
+            let mut frame_scene = self.clone();
+            set_fov(&mut frame_scene.viewpoint, weather, time_s);
+            light::relight(&mut frame_scene.data, weather, loaded, self.origin, time_s);
+            frame_scene.data.set_wetness(SceneWetness::of(weather, time_s, self.origin).as_ref());
+            return Ok(frame_scene);
         };
         let distance_m = (seen.eye - self.origin).abs().max_element();
         if distance_m > NEAR_ORIGIN_M {
@@ -168,15 +168,15 @@ impl FrameScene {
         let mut viewpoint = seen.viewpoint(weather.camera.fov.unwrap_or(seen.fov), self.origin);
         set_fov(&mut viewpoint, weather, time_s);
         viewpoint.axes()?;
-        let mut stage = Self { viewpoint, motion: motion(weather, loaded, time_s), ..self.clone() };
-        light::relight(&mut stage.data, weather, loaded, self.origin, time_s);
-        stage.data.set_wetness(SceneWetness::of(weather, time_s, self.origin).as_ref());
-        Ok(stage)
+        let mut frame_scene = Self { viewpoint, motion: motion(weather, loaded, time_s), ..self.clone() };
+        light::relight(&mut frame_scene.data, weather, loaded, self.origin, time_s);
+        frame_scene.data.set_wetness(SceneWetness::of(weather, time_s, self.origin).as_ref());
+        Ok(frame_scene)
     }
 
     /// The same scene, which stands still, at a time in seconds in another weather over the same models: `before` is the weather of this
-    /// stage and `loaded` has the files of the new one. A new lamp has no glass in the model, and one that is moved keeps its own, until
-    /// the stage is built anew.
+    /// scene and `loaded` has the files of the new one. A new lamp has no glass in the model, and one that is moved keeps its own, until
+    /// the scene is built anew.
     ///
     /// # Errors
     /// As [`FrameScene::seen_at`]; [`RenderError::Size`].
@@ -189,7 +189,7 @@ impl FrameScene {
         time_s: f64,
     ) -> Result<Self, FrameSceneError> {
         check_size(weather.size)?;
-        let mut stage = Self {
+        let mut frame_scene = Self {
             size: weather.size,
             shutter_s: weather.camera.shutter,
             exposure_ev: weather.camera.exposure_ev as f32,
@@ -199,21 +199,21 @@ impl FrameScene {
         if reloaded.sky || !is_lit_alike {
             // A sun may have come or gone.
             let others = before.lights.len() as u32 + u32::from(self.has_sun);
-            light::set_light(&mut stage.data, weather, loaded, reloaded.sky, others, self.origin);
-            stage.has_sun = loaded.sun.is_some();
-            stage.lamps = (self.lamps + weather.lights.len()).saturating_sub(before.lights.len());
+            light::set_light(&mut frame_scene.data, weather, loaded, reloaded.sky, others, self.origin);
+            frame_scene.has_sun = loaded.sun.is_some();
+            frame_scene.lamps = (self.lamps + weather.lights.len()).saturating_sub(before.lights.len());
         }
         let seen = CameraView::of(weather, loaded, &posed(loaded, time_s), time_s);
         if seen.is_some() || weather.camera.near.is_some() || weather.camera.far.is_some() {
-            stage.depth = depth(weather, seen.as_ref());
+            frame_scene.depth = depth(weather, seen.as_ref());
         }
         if let Some(seen) = &seen {
-            stage.camera = seen.choice.clone();
+            frame_scene.camera = seen.choice.clone();
         }
         if let Some(fov) = weather.camera.fov {
-            stage.viewpoint.fov_y = fov as f32;
+            frame_scene.viewpoint.fov_y = fov as f32;
         }
-        stage.seen_at(weather, loaded, time_s)
+        frame_scene.seen_at(weather, loaded, time_s)
     }
 
     /// The part of space that the picture shows, in the world, for [`RainField`](downpour_sim::field::RainField).

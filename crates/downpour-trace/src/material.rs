@@ -1,8 +1,8 @@
 //! Materials and textures as rows of the scene's table. Twin of `shaders/wgsl/render/material.wgsl`.
 
 use downpour_shaders::render::scene::{
-    SCENE_BLENDED, SCENE_LAMP_GLASS, SCENE_MASKED, SCENE_MATERIAL_ROWS, SCENE_NONE, SCENE_SLOT_ROWS, SCENE_SPOT_GLASS,
-    SCENE_UNLIT,
+    SCENE_BLENDED, SCENE_LAMP_GLASS, SCENE_MASKED, SCENE_MATERIAL_ROWS, SCENE_NONE, SCENE_SLOT_ROWS,
+    SCENE_SPOT_GLASS, SCENE_UNLIT,
 };
 use glam::{Vec3, Vec4};
 

@@ -66,32 +66,32 @@ impl SceneData {
 /// True if anything that the picture may show is lit through the pane: something on the eye's side of it, within the box
 /// around the eye and the pane, and a lamp or a sun.
 #[must_use]
-pub fn is_lit_through(pane: &WetPane, stage: &FrameScene) -> bool {
-    let Ok([corner, across, down, _]) = pane.axes(&stage.viewpoint) else { return false };
-    if stage.data.light_count == 0 || !pane.has_shadows() {
+pub fn is_lit_through(pane: &WetPane, frame_scene: &FrameScene) -> bool {
+    let Ok([corner, across, down, _]) = pane.axes(&frame_scene.viewpoint) else { return false };
+    if frame_scene.data.light_count == 0 || !pane.has_shadows() {
         return false;
     }
-    let eye = DVec3::from(stage.viewpoint.eye);
+    let eye = DVec3::from(frame_scene.viewpoint.eye);
     let [width, height] = pane.size_m();
     let [right, down] = [across * width, down * height];
     let corners = [corner, corner + right, corner + down, corner + right + down];
     let low = corners.iter().fold(eye, |low, &at| low.min(at)).as_vec3();
     let high = corners.iter().fold(eye, |high, &at| high.max(at)).as_vec3();
-    stage.data.triangles.iter().any(|triangle| {
+    frame_scene.data.triangles.iter().any(|triangle| {
         let a = Vec3::from(triangle.corner);
         let (b, c) = (a + Vec3::from(triangle.edge_1), a + Vec3::from(triangle.edge_2));
         low.cmple(a.max(b).max(c)).all() && high.cmpge(a.min(b).min(c)).all()
     })
 }
 
-/// Sets the pane as it is now before the lamps of a stage, so that they throw the shadows of its drops.
+/// Sets the pane as it is now before the lamps of a frame, so that they throw the shadows of its drops.
 ///
 /// # Errors
 /// As [`WetPane::axes`] and [`WetPane::shade`].
-pub fn set_pane(pane: &WetPane, stage: &mut FrameScene) -> Result<(), PaneError> {
+pub fn set_pane(pane: &WetPane, frame_scene: &mut FrameScene) -> Result<(), PaneError> {
     let Some(shade) = pane.shade()? else { return Ok(()) };
-    let axes = pane.axes(&stage.viewpoint)?;
-    stage.data.set_pane(&shade, axes.map(DVec3::as_vec3));
+    let axes = pane.axes(&frame_scene.viewpoint)?;
+    frame_scene.data.set_pane(&shade, axes.map(DVec3::as_vec3));
     Ok(())
 }
 

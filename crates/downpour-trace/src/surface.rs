@@ -118,13 +118,7 @@ impl SceneData {
     /// Returns what is in the way of a ray up to a distance: any surface through which nothing passes, or the nearest of all if
     /// it is one that lets light through.
     #[must_use]
-    pub fn surface_blocker(
-        &self,
-        origin: Vec3,
-        direction: Vec3,
-        nearest: f32,
-        farthest: f32,
-    ) -> Option<Hit> {
+    pub fn surface_blocker(&self, origin: Vec3, direction: Vec3, nearest: f32, farthest: f32) -> Option<Hit> {
         self.surface_walk::<true>(origin, direction, nearest, farthest)
     }
 

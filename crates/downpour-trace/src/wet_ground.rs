@@ -41,7 +41,7 @@ pub struct WetGround {
 }
 
 impl WetGround {
-    /// The puddles of a weather, if it has any, on the ground of a stage; `first_s` is the time of the first picture. What
+    /// The puddles of a weather, if it has any, on the ground of a frame; `first_s` is the time of the first picture. What
     /// moves afterwards leaves them where they are.
     ///
     /// # Errors
@@ -49,7 +49,7 @@ impl WetGround {
     pub fn new(
         weather: &Weather,
         loaded: &Loaded,
-        stage: &FrameScene,
+        frame_scene: &FrameScene,
         first_s: f64,
     ) -> Result<Option<Self>, PuddleError> {
         if weather.puddles.is_empty() {
@@ -65,11 +65,12 @@ impl WetGround {
         let masks = loaded.masks.iter().map(Option::as_ref).chain(std::iter::repeat(None));
         let (mut puddles, mut filled) = (Vec::new(), Vec::new());
         for (index, (puddle, mask)) in weather.puddles.iter().zip(masks).enumerate() {
-            let ground = ground(puddle, stage);
+            let ground = ground(puddle, frame_scene);
             let map = match (&puddle.shape, mask) {
                 (&PuddleShape::Found { fill, min_depth, relief, seed, cells }, _) => {
                     let relief = Relief { rms_m: relief as f32, seed };
-                    let ground = PuddleGround::new(&stage.data, &ground, cells.map(|n| n as usize), &relief);
+                    let ground =
+                        PuddleGround::new(&frame_scene.data, &ground, cells.map(|n| n as usize), &relief);
                     let limits = FillLimits { deepest: puddle.depth as f32, least: min_depth as f32 };
                     let (filling, seepage) = match fill {
                         PuddleFill::Part(_) => (given(weather, index, first_s), None),
@@ -83,16 +84,16 @@ impl WetGround {
                 }
                 (PuddleShape::Painted(_), Some(mask)) => {
                     let size = [mask.width as usize, mask.height as usize];
-                    PuddleMap::painted(&stage.data, &ground, size, &depths(mask, puddle.depth as f32))
+                    PuddleMap::painted(&frame_scene.data, &ground, size, &depths(mask, puddle.depth as f32))
                 }
                 // A mask that was not loaded: nothing is painted.
                 (PuddleShape::Painted(_), None) => {
-                    PuddleMap::painted(&stage.data, &ground, [2, 2], &[0.0; 4])
+                    PuddleMap::painted(&frame_scene.data, &ground, [2, 2], &[0.0; 4])
                 }
             };
             puddles.push((map, look(puddle)));
         }
-        Ok(Some(Self { weather: weather.clone(), puddles, filled, origin: stage.origin, ripples }))
+        Ok(Some(Self { weather: weather.clone(), puddles, filled, origin: frame_scene.origin, ripples }))
     }
 
     /// Steps the rain to a time in seconds; times must not decrease.
@@ -113,13 +114,13 @@ impl WetGround {
         self.ripples.advance(time_s)
     }
 
-    /// Sets the puddles of a stage to the present state of the water.
-    pub fn lay(&self, stage: &mut FrameScene) {
-        stage.data.set_puddles(&PuddleRows {
+    /// Sets the puddles of a frame to the present state of the water.
+    pub fn lay(&self, frame_scene: &mut FrameScene) {
+        frame_scene.data.set_puddles(&PuddleRows {
             puddles: &self.puddles,
             shape: self.ripples.shape(),
             slopes: &self.ripples.slopes(),
-            shift: (self.origin - stage.origin).as_vec3(),
+            shift: (self.origin - frame_scene.origin).as_vec3(),
         });
     }
 
@@ -130,9 +131,9 @@ impl WetGround {
 }
 
 /// The rectangle of a puddle.
-fn ground(puddle: &Puddle, stage: &FrameScene) -> Ground {
+fn ground(puddle: &Puddle, frame_scene: &FrameScene) -> Ground {
     Ground {
-        middle: (DVec3::from(puddle.middle) - stage.origin).as_vec3(),
+        middle: (DVec3::from(puddle.middle) - frame_scene.origin).as_vec3(),
         size: Vec2::from(puddle.size.map(|edge| edge as f32)),
         turn: puddle.turn as f32,
         reach: puddle.reach as f32,

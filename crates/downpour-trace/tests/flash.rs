@@ -83,12 +83,12 @@ fn from_above(
 ) -> Result<Vec<f32>, Box<dyn std::error::Error>> {
     let mut weather = Weather::default();
     weather.wetness.is_enabled = false;
-    let stage = FrameScene::new(&weather, &scene(poles), 0.0)?.in_flash(&weather, 0.0, &[*flash]);
+    let frame_scene = FrameScene::new(&weather, &scene(poles), 0.0)?.in_flash(&weather, 0.0, &[*flash]);
     // A narrow view from far away is all but parallel.
     let fov_y = 2.0 * downpour_math::ops::atan(6.0 / 600.0);
     let view = Viewpoint { eye: middle + Vec3::Y * 600.0, forward: Vec3::NEG_Y, up: Vec3::NEG_Z, fov_y };
-    let frame = RenderFrame::new(&stage.data, &view, [EDGE, EDGE], 2, 1, 3)?;
-    let picture = SceneView { data: &stage.data, frame: &frame }.picture();
+    let frame = RenderFrame::new(&frame_scene.data, &view, [EDGE, EDGE], 2, 1, 3)?;
+    let picture = SceneView { data: &frame_scene.data, frame: &frame }.picture();
     Ok(picture.iter().map(|pixel| pixel[1]).collect())
 }
 

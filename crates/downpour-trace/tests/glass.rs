@@ -24,8 +24,8 @@ type Outcome = Result<(), Box<dyn std::error::Error>>;
 const SIZE: [u32; 2] = [96, 64];
 const CAPTURE: usize = (4 * 64 * 64 - 1) / 3;
 
-/// A stage under an even sky, looking along -z.
-fn stage(glass: &str) -> Result<(Weather, FrameScene), Box<dyn std::error::Error>> {
+/// A scene under an even sky, looking along -z.
+fn frame_scene(glass: &str) -> Result<(Weather, FrameScene), Box<dyn std::error::Error>> {
     let text = format!(
         "[rain]\nrate_mm_h = 100\n[camera]\nposition_m = [0, 1.5, 0]\nfov_deg = 14\n[output]\nsize = [96, 64]\n[glass]\n{glass}"
     );
@@ -41,18 +41,18 @@ fn stage(glass: &str) -> Result<(Weather, FrameScene), Box<dyn std::error::Error
         drop_model: None,
         warnings: Vec::new(),
     };
-    let stage = FrameScene::new(&weather, &loaded, 0.0)?;
-    Ok((weather, stage))
+    let frame_scene = FrameScene::new(&weather, &loaded, 0.0)?;
+    Ok((weather, frame_scene))
 }
 
 /// The pane of a weather, ready to be looked through.
 fn picture(glass: &str) -> Result<GlassPicture, Box<dyn std::error::Error>> {
-    let (weather, stage) = stage(glass)?;
-    let mut pane = WetPane::new(&weather, &stage.viewpoint, 0.0)?.ok_or("no pane")?;
+    let (weather, frame_scene) = frame_scene(glass)?;
+    let mut pane = WetPane::new(&weather, &frame_scene.viewpoint, 0.0)?.ok_or("no pane")?;
     pane.advance(0.0)?;
-    let frame = RenderFrame::new(&stage.data, &stage.viewpoint, SIZE, 1, 0, 0)?;
-    let lighting = SceneView { data: &stage.data, frame: &frame };
-    Ok(pane.picture(&stage.viewpoint, &frame.camera, frame.grid, &lighting, CAPTURE, 0.0)?)
+    let frame = RenderFrame::new(&frame_scene.data, &frame_scene.viewpoint, SIZE, 1, 0, 0)?;
+    let lighting = SceneView { data: &frame_scene.data, frame: &frame };
+    Ok(pane.picture(&frame_scene.viewpoint, &frame.camera, frame.grid, &lighting, CAPTURE, 0.0)?)
 }
 
 /// A picture far away, and a capture, of a radiance by the height of a direction: -1 to 1.
@@ -308,9 +308,9 @@ fn a_drop_shows_a_lamp_as_bright_as_it_is() -> Outcome {
 fn time_may_be_divided_as_one_likes() -> Outcome {
     let keys = "before_s = 2\nspeed_m_s = [[-2, 0], [0, 8], [1, 3]]\nsize_m = [0.1, 0.08]\n[[glass.wiper]]\npivot_m = [0.05, \
                 0.09]\nlength_m = 0.08\nfrom_deg = 20\nto_deg = 160\nperiod_s = 1.3\n";
-    let (weather, stage) = stage(keys)?;
+    let (weather, frame_scene) = frame_scene(keys)?;
     let ends = |times: &[f64]| -> Result<Vec<u32>, Box<dyn std::error::Error>> {
-        let mut pane = WetPane::new(&weather, &stage.viewpoint, 0.0)?.ok_or("no pane")?;
+        let mut pane = WetPane::new(&weather, &frame_scene.viewpoint, 0.0)?.ok_or("no pane")?;
         for &time in times {
             pane.advance(time)?;
         }
@@ -327,7 +327,7 @@ fn time_may_be_divided_as_one_likes() -> Outcome {
 
 #[test]
 fn a_pane_that_is_not_before_the_eye_is_refused() -> Outcome {
-    let (weather, _) = stage("tilt_deg = 20")?;
+    let (weather, _) = frame_scene("tilt_deg = 20")?;
     let text = "[camera]\nposition_m = [0, 2, 0]\npitch_deg = -30\n";
     let looks_down = Weather::parse("w.toml", text)?;
     let loaded = Loaded {
@@ -351,10 +351,10 @@ fn a_pane_that_is_not_before_the_eye_is_refused() -> Outcome {
 #[test]
 fn lamps_throw_the_shadows_of_drops_on_a_sill() -> Outcome {
     let glass = "distance_m = 0.5\nsize_m = [0.4, 0.3]\ncell_mm = 1.0\nbefore_s = 20";
-    let (weather, mut stage) = stage(glass)?;
-    let mut pane = WetPane::new(&weather, &stage.viewpoint, 0.0)?.ok_or("no pane")?;
+    let (weather, mut frame_scene) = frame_scene(glass)?;
+    let mut pane = WetPane::new(&weather, &frame_scene.viewpoint, 0.0)?.ok_or("no pane")?;
     pane.advance(0.0)?;
-    assert!(!is_lit_through(&pane, &stage), "there is nothing that could be lit");
+    assert!(!is_lit_through(&pane, &frame_scene), "there is nothing that could be lit");
     let mut builder = SceneBuilder::new();
     let white = builder.add_material(MaterialLook::default());
     let positions = [[-0.1, 1.36, -0.49], [0.1, 1.36, -0.49], [0.1, 1.36, -0.3], [-0.1, 1.36, -0.3]];
@@ -367,8 +367,8 @@ fn lamps_throw_the_shadows_of_drops_on_a_sill() -> Outcome {
         intensity: Vec3::splat(100.0),
         range: 0.0,
     });
-    stage.data = builder.build(&SkyLight::uniform([0.0; 3]));
-    assert!(is_lit_through(&pane, &stage));
+    frame_scene.data = builder.build(&SkyLight::uniform([0.0; 3]));
+    assert!(is_lit_through(&pane, &frame_scene));
     // Straight down on the middle of the sill.
     let above =
         Viewpoint { eye: Vec3::new(0.0, 2.36, -0.42), forward: Vec3::NEG_Y, up: Vec3::NEG_Z, fov_y: 0.1 };
@@ -376,9 +376,9 @@ fn lamps_throw_the_shadows_of_drops_on_a_sill() -> Outcome {
         let frame = RenderFrame::new(data, &above, [96, 96], 1, 0, 0)?;
         Ok(SceneView { data, frame: &frame }.picture().iter().map(|pixel| pixel[0]).collect())
     };
-    let open = lit(&stage.data)?;
-    set_pane(&pane, &mut stage)?;
-    let through = lit(&stage.data)?;
+    let open = lit(&frame_scene.data)?;
+    set_pane(&pane, &mut frame_scene)?;
+    let through = lit(&frame_scene.data)?;
     let fractions: Vec<f32> = through.iter().zip(&open).map(|(a, b)| a / b).collect();
     let mean = fractions.iter().sum::<f32>() / fractions.len() as f32;
     assert!((0.85..0.97).contains(&mean), "{mean}");
@@ -386,9 +386,9 @@ fn lamps_throw_the_shadows_of_drops_on_a_sill() -> Outcome {
         fractions.iter().filter(|&&fraction| fraction < 0.5 * mean).count() as f32 / fractions.len() as f32;
     assert!((0.01..0.5).contains(&dark), "{dark} of the sill is in shadow");
     // The same again takes the place of the first.
-    let rows = stage.data.table.len();
-    set_pane(&pane, &mut stage)?;
-    assert_eq!(stage.data.table.len(), rows);
+    let rows = frame_scene.data.table.len();
+    set_pane(&pane, &mut frame_scene)?;
+    assert_eq!(frame_scene.data.table.len(), rows);
     Ok(())
 }
 
@@ -488,8 +488,8 @@ fn a_blade_is_opaque_where_it_stands_and_nowhere_else() -> Outcome {
 #[test]
 fn a_wind_drives_rain_against_a_window() -> Outcome {
     let water = |keys: &str| -> Result<Vec<u32>, Box<dyn std::error::Error>> {
-        let (weather, stage) = stage(&format!("before_s = 2\nsize_m = [0.1, 0.1]\n{keys}"))?;
-        let mut pane = WetPane::new(&weather, &stage.viewpoint, 0.0)?.ok_or("no pane")?;
+        let (weather, frame_scene) = frame_scene(&format!("before_s = 2\nsize_m = [0.1, 0.1]\n{keys}"))?;
+        let mut pane = WetPane::new(&weather, &frame_scene.viewpoint, 0.0)?.ok_or("no pane")?;
         pane.advance(0.0)?;
         Ok(pane.state()?.mass.clone())
     };
@@ -505,7 +505,7 @@ fn a_wind_drives_rain_against_a_window() -> Outcome {
 #[test]
 fn a_rate_that_changes_wets_a_pane_when_it_rains() -> Outcome {
     let water = |rate: &str, time_s: f64| -> Result<u64, Box<dyn std::error::Error>> {
-        let (weather, stage) = stage("before_s = 0\nsize_m = [0.1, 0.1]\nspeed_m_s = 8")?;
+        let (weather, frame_scene) = frame_scene("before_s = 0\nsize_m = [0.1, 0.1]\nspeed_m_s = 8")?;
         let keyed = Weather::parse(
             "w.toml",
             &format!(
@@ -513,7 +513,7 @@ fn a_rate_that_changes_wets_a_pane_when_it_rains() -> Outcome {
             ),
         )?;
         assert_eq!(weather.glass, keyed.glass);
-        let mut pane = WetPane::new(&keyed, &stage.viewpoint, 0.0)?.ok_or("no pane")?;
+        let mut pane = WetPane::new(&keyed, &frame_scene.viewpoint, 0.0)?.ok_or("no pane")?;
         pane.advance(time_s)?;
         Ok(pane.state()?.mass.iter().map(|&mass| u64::from(mass)).sum())
     };

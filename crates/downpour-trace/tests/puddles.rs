@@ -53,7 +53,7 @@ fn flat(albedo: f32) -> SceneData {
 
 const SQUARE: Ground = Ground { middle: Vec3::ZERO, size: Vec2::splat(3.0), turn: 0.0, reach: 0.5 };
 
-/// Painted water of one depth on a stage, still.
+/// Painted water of one depth in a scene, still.
 fn flood(scene: &mut SceneData, depth: f32, look: PuddleLook) {
     let map = PuddleMap::painted(scene, &SQUARE, [4, 4], &[depth; 16]);
     scene.set_puddles(&PuddleRows {
@@ -238,7 +238,7 @@ fn ripples_are_the_same_for_any_division_of_the_time() -> Outcome {
     Ok(())
 }
 
-/// From the weather file to the stage: the water of a flat street with the usual unevenness.
+/// From the weather file to the scene: the water of a flat street with the usual unevenness.
 #[test]
 fn a_weathers_puddles_lie_on_its_stage() -> Outcome {
     let text = "[rain]\nrate_mm_h = 10\n[camera]\nposition_m = [0, 1.5, 0]\n[[puddle]]\nposition_m = [0, 0, -3]\n\
@@ -254,12 +254,12 @@ fn a_weathers_puddles_lie_on_its_stage() -> Outcome {
         drop_model: None,
         warnings: Vec::new(),
     };
-    let mut stage = downpour_trace::frame_scene::FrameScene::new(&weather, &loaded, 0.0)?;
+    let mut frame_scene = downpour_trace::frame_scene::FrameScene::new(&weather, &loaded, 0.0)?;
     // Nothing but air is there: no ground, no water.
     let ground =
-        downpour_trace::wet_ground::WetGround::new(&weather, &loaded, &stage, 0.0)?.ok_or("puddles")?;
-    ground.lay(&mut stage);
-    assert_eq!(stage.data.puddle_count, 1);
+        downpour_trace::wet_ground::WetGround::new(&weather, &loaded, &frame_scene, 0.0)?.ok_or("puddles")?;
+    ground.lay(&mut frame_scene);
+    assert_eq!(frame_scene.data.puddle_count, 1);
     assert!(ground.maps().all(|map| map.area_m2() == 0.0));
     let street = flat(0.3);
     let spot = Ground { size: Vec2::new(4.0, 4.0), ..SQUARE };

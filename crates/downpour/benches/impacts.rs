@@ -17,7 +17,7 @@ fn impacts(c: &mut Criterion) {
         let path = if path.exists() { path } else { format!("assets/scenes/street/{name}.toml").into() };
         let mut source = Source::read(&path, &[], &mut Budget::default()).expect("a weather");
         source.weather.size = [1920, 1080];
-        let stage = FrameScene::new(&source.weather, &source.loaded, 0.0).expect("a stage");
+        let frame_scene = FrameScene::new(&source.weather, &source.loaded, 0.0).expect("a frame's scene");
         let mut group = c.benchmark_group(format!("impacts {name}"));
         group.sample_size(10);
         let mut time_s = 0.0;
@@ -32,13 +32,14 @@ fn impacts(c: &mut Criterion) {
                 weather.rain.bounce.fraction = 0.0;
             }
             let shower = Shower::new(&weather).expect("a rain");
-            let found = shower.view_at(&stage, next_s(), 1 << 22).expect("a view").expect("closed form");
+            let found =
+                shower.view_at(&frame_scene, next_s(), 1 << 22).expect("a view").expect("closed form");
             println!("{name}, {part}: {} drops", found.droplets.len());
-            group.bench_function(part, |b| b.iter(|| shower.view_at(&stage, next_s(), 1 << 22)));
+            group.bench_function(part, |b| b.iter(|| shower.view_at(&frame_scene, next_s(), 1 << 22)));
             if part == "both" {
                 let mut alone = shower.clone();
                 group.bench_function("alone", |b| {
-                    b.iter(|| alone.at(&Still(&stage), &stage, next_s(), &mut |_, _| ()));
+                    b.iter(|| alone.at(&Still(&frame_scene), &frame_scene, next_s(), &mut |_, _| ()));
                 });
             }
         }

@@ -44,7 +44,7 @@ const NEAR: [f32; 2] = [0.2, 1.0];
 /// Setup that all pictures share.
 struct Bench<'a> {
     gpu: &'a Gpu,
-    stage: &'a FrameScene,
+    frame_scene: &'a FrameScene,
     frame: downpour::trace::data::RenderFrame,
     masks: [DropMasks; 2],
     scenes: ScenePipeline,
@@ -76,22 +76,23 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut budget = Budget::default();
     let weather = Weather::read(path, &mut budget)?;
     let loaded = load(&weather, &Roots::open(path, &[])?, &mut budget)?;
-    let stage = FrameScene::new(&weather, &loaded, 0.0)?;
+    let frame_scene = FrameScene::new(&weather, &loaded, 0.0)?;
     let gpu = Gpu::open(&AdapterChoice::Auto)?;
     let size = if quick { [320, 240] } else { [1024, 768] };
     println!("adapter: {}; {} x {}, shutter 1/60 s", gpu.adapter().name, size[0], size[1]);
 
     let masks = DropMasks::trace(MaskOptions::default().refractive_index)?;
     let (scenes, rains) = (ScenePipeline::new(&gpu)?, RainPipeline::new(&gpu)?);
-    let frame = RenderFrame::new(&stage.data, &stage.viewpoint, size, 1, 1, 0)?;
+    let frame = RenderFrame::new(&frame_scene.data, &frame_scene.viewpoint, size, 1, 1, 0)?;
     // Without and with the streaks of an atlas.
     let masks = [masks.clone(), masks.with_atlas(&StreakAtlas::load(Path::new("assets/streaks"))?)];
-    let scene = scenes.upload(&stage.data)?;
+    let scene = scenes.upload(&frame_scene.data)?;
     let uploaded = [rains.upload(&masks[0])?, rains.upload(&masks[1])?];
     let drawn = scenes.prepare(&gpu, &scene, &frame)?;
     println!("scene by rays, one sample, one ray to the sky: {:.3} ms", time(&gpu, &drawn.dispatches())?);
     let clean = drawn.picture().clone();
-    let bench = Bench { gpu: &gpu, stage: &stage, frame, masks, scenes, rains, scene, uploaded, clean };
+    let bench =
+        Bench { gpu: &gpu, frame_scene: &frame_scene, frame, masks, scenes, rains, scene, uploaded, clean };
     bench.by_count(quick)?;
     bench.by_light(if quick { 1000 } else { 10_000 })?;
     let software = gpu.adapter().is_software();
@@ -136,7 +137,7 @@ impl Bench<'_> {
         let without = of(DropLightForm::None, 0)?;
         println!(
             "\n{count} streaks, r = 1 mm, {} lamps: {:.3} ms without their light",
-            self.stage.lamps, without.drops
+            self.frame_scene.lamps, without.drops
         );
         println!("| form | lamps ms | streaks ms | of capture, table and streaks without them |");
         println!("|---|---|---|---|");
@@ -190,12 +191,12 @@ impl Bench<'_> {
 
     fn cost(&self, drops: &[FallingDrop], options: &RainOptions) -> Result<Cost, Box<dyn Error>> {
         let start = Instant::now();
-        let eye = self.stage.viewpoint.eye.as_dvec3();
+        let eye = self.frame_scene.viewpoint.eye.as_dvec3();
         let of_atlas = usize::from(options.light.form == DropLightForm::Atlas);
         let (masks, uploaded) = (&self.masks[of_atlas], &self.uploaded[of_atlas]);
         let rain = Rain::new(&self.frame.camera, eye, drops, masks, options);
         let binning = ms(start.elapsed());
-        let view = SceneView { data: &self.stage.data, frame: &self.frame };
+        let view = SceneView { data: &self.frame_scene.data, frame: &self.frame };
         let lights = [rain.lights(&view, masks)?, rain.streak_lights(&view, masks)?];
         let plate = self.scenes.plate(self.gpu, &self.scene, &self.frame, &self.rains, &rain)?;
         let pass = self.rains.prepare(self.gpu, &plate.of(&self.clean), uploaded, &rain, &lights)?;
@@ -218,7 +219,7 @@ impl Bench<'_> {
         // The largest of the table is no drop of rain: it falls as fast as the largest that is.
         let speed = TerminalSpeed::new(FallSpeedModel::default(), &Air::standard())
             .at(f64::from(diameter).min(7.0e-3))?;
-        let view = &self.stage.viewpoint;
+        let view = &self.frame_scene.viewpoint;
         let forward = view.forward.normalize();
         let right = forward.cross(view.up).normalize();
         let up = right.cross(forward);

@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut budget = Budget::default();
     let weather = Weather::read(path, &mut budget)?;
     let loaded = load(&weather, &Roots::open(path, &[])?, &mut budget)?;
-    let stage = FrameScene::new(&weather, &loaded, 0.0)?;
+    let frame_scene = FrameScene::new(&weather, &loaded, 0.0)?;
 
     let gpu = Gpu::open(&AdapterChoice::Auto)?;
     println!("adapter: {}", gpu.adapter().name);
@@ -43,8 +43,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (scenes, rains) = (ScenePipeline::new(&gpu)?, RainPipeline::new(&gpu)?);
     println!("pipelines: {:.1} ms", ms(start.elapsed()));
 
-    let frame = RenderFrame::new(&stage.data, &stage.viewpoint, [1024, 768], 1, 1, 0)?;
-    let (scene, uploaded) = (scenes.upload(&stage.data)?, rains.upload(&masks)?);
+    let frame = RenderFrame::new(&frame_scene.data, &frame_scene.viewpoint, [1024, 768], 1, 1, 0)?;
+    let (scene, uploaded) = (scenes.upload(&frame_scene.data)?, rains.upload(&masks)?);
     let drawn = scenes.prepare(&gpu, &scene, &frame)?;
     println!(
         "scene by rays, 1024 x 768, one sample, one ray to the sky: {:.3} ms",
@@ -54,12 +54,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("|---|---|---|---|---|---|---|");
     for count in [0, 1000, 10_000] {
         for radius in [1.0e-3, 3.0e-3, 4.0e-3] {
-            let drops: Vec<FallingDrop> = (0..count).map(|k| drop(&stage, k, 2.0 * radius)).collect();
+            let drops: Vec<FallingDrop> = (0..count).map(|k| drop(&frame_scene, k, 2.0 * radius)).collect();
             let start = Instant::now();
-            let eye = stage.viewpoint.eye.as_dvec3();
+            let eye = frame_scene.viewpoint.eye.as_dvec3();
             let rain = Rain::new(&frame.camera, eye, &drops, &masks, &RainOptions::default());
             let binning = ms(start.elapsed());
-            let view = SceneView { data: &stage.data, frame: &frame };
+            let view = SceneView { data: &frame_scene.data, frame: &frame };
             let lights = [rain.lights(&view, &masks)?, rain.streak_lights(&view, &masks)?];
             let plate = scenes.plate(&gpu, &scene, &frame, &rains, &rain)?;
             let pass = rains.prepare(&gpu, &plate.of(drawn.picture()), &uploaded, &rain, &lights)?;
@@ -91,9 +91,9 @@ fn ms(time: std::time::Duration) -> f64 {
 }
 
 /// A drop somewhere in the picture, uniform in space.
-fn drop(stage: &FrameScene, index: u32, diameter: f32) -> FallingDrop {
+fn drop(frame_scene: &FrameScene, index: u32, diameter: f32) -> FallingDrop {
     let [a, b, c, _] = rng_draw([2006, 0], index, 0, 0).map(rng_unit);
-    let view = &stage.viewpoint;
+    let view = &frame_scene.viewpoint;
     let forward = view.forward.normalize();
     let right = forward.cross(view.up).normalize();
     let up = right.cross(forward);

@@ -124,15 +124,15 @@ struct Water {
 }
 
 impl Water {
-    /// Puts the water on the ground of a stage, and what the pane does to light that falls through it.
-    fn lay(&self, stage: &mut FrameScene) -> Result<(), RendererError> {
+    /// Puts the water on the ground of a frame, and what the pane does to light that falls through it.
+    fn lay(&self, frame_scene: &mut FrameScene) -> Result<(), RendererError> {
         if let Some(ground) = &self.ground {
-            ground.lay(stage);
+            ground.lay(frame_scene);
         }
         if let Some(pane) = &self.pane
-            && is_lit_through(pane, stage)
+            && is_lit_through(pane, frame_scene)
         {
-            set_pane(pane, stage)?;
+            set_pane(pane, frame_scene)?;
         }
         Ok(())
     }
@@ -287,35 +287,35 @@ impl Renderer {
         told: &mut dyn FnMut(Progress),
     ) -> Result<PendingFrame, RendererError> {
         let begin = Instant::now();
-        let stage = self.wet(time_s, told)?;
-        let mut drops = self.drops(&stage, time_s, told)?;
-        let measured = || self.shower.measured_rate_mm_h(&stage, time_s);
+        let frame_scene = self.wet(time_s, told)?;
+        let mut drops = self.drops(&frame_scene, time_s, told)?;
+        let measured = || self.shower.measured_rate_mm_h(&frame_scene, time_s);
         let measured_rate_mm_h = self.options.measure.then(measured).transpose()?;
         told(Progress { what: "drawing", parts: [0; 2] });
         // The first picture says whether the device can draw it, and how bright all are.
         let waits = self.drawn == 0 || self.exposure.is_none();
         let kept_frames = self.options.kept_frames;
-        let mut medium = self.shower.medium(&stage, drops.resolved(), &self.masks, time_s)?;
-        let options = self.picture_options(&stage, time_s, medium);
-        let picture = match self.draw(&stage, &drops, &options, kept_frames, waits) {
+        let mut medium = self.shower.medium(&frame_scene, drops.resolved(), &self.masks, time_s)?;
+        let options = self.picture_options(&frame_scene, time_s, medium);
+        let picture = match self.draw(&frame_scene, &drops, &options, kept_frames, waits) {
             Err(error) if self.drawn == 0 && self.drawer.falls_back(&error) => {
-                drops = self.drops(&stage, time_s, told)?;
-                medium = self.shower.medium(&stage, drops.resolved(), &self.masks, time_s)?;
-                let options = self.picture_options(&stage, time_s, medium);
-                self.draw(&stage, &drops, &options, kept_frames, waits)?
+                drops = self.drops(&frame_scene, time_s, told)?;
+                medium = self.shower.medium(&frame_scene, drops.resolved(), &self.masks, time_s)?;
+                let options = self.picture_options(&frame_scene, time_s, medium);
+                self.draw(&frame_scene, &drops, &options, kept_frames, waits)?
             }
             drawn => drawn?,
         };
         self.drawn += 1;
         let exposure = match (self.exposure, picture.done()) {
-            (None, Some(picture)) => *self.exposure.insert(stage.exposure(&picture.clean)),
+            (None, Some(picture)) => *self.exposure.insert(frame_scene.exposure(&picture.clean)),
             (exposure, _) => exposure.unwrap_or(1.0),
         };
         let flashes = self.flashes(time_s, &drops, told)?;
-        let triangles = stage.triangles;
+        let triangles = frame_scene.triangles;
         let truth = self.options.truth.then(|| {
-            let options = self.picture_options(&stage, time_s, medium);
-            Box::new(TruthOf { masks: Arc::clone(&self.masks), options, stage })
+            let options = self.picture_options(&frame_scene, time_s, medium);
+            Box::new(TruthOf { masks: Arc::clone(&self.masks), options, frame_scene })
         });
         let begin_ms = begin.elapsed().as_secs_f64() * 1.0e3;
         Ok(PendingFrame {
@@ -347,20 +347,20 @@ impl Renderer {
             }
         }
         if !self.shower.can_seek() {
-            let stage = self.stage(time_s)?;
-            self.drops(&stage, time_s, &mut |_| {})?;
+            let frame_scene = self.frame_scene(time_s)?;
+            self.drops(&frame_scene, time_s, &mut |_| {})?;
         }
         Ok(())
     }
 
     /// The scene at a time. A copy costs little: what does not change is shared.
-    fn stage(&self, time_s: f64) -> Result<FrameScene, RendererError> {
+    fn frame_scene(&self, time_s: f64) -> Result<FrameScene, RendererError> {
         check_time(time_s)?;
         if time_s.to_bits() == self.options.first_s.to_bits() {
             return Ok(self.first.clone());
         }
         let scenery = scenery(&self.first, &self.weather, &self.loaded);
-        Ok(scenery.stage(time_s)?.into_owned())
+        Ok(scenery.frame_scene(time_s)?.into_owned())
     }
 
     /// Water on ground and pane, not later than a time.
@@ -388,9 +388,9 @@ impl Renderer {
 
     /// The scene at a time with the water on its ground, and with what a pane does to the light that falls through it.
     fn wet(&mut self, time_s: f64, told: &mut dyn FnMut(Progress)) -> Result<FrameScene, RendererError> {
-        let mut stage = self.stage(time_s)?;
+        let mut frame_scene = self.frame_scene(time_s)?;
         if self.weather.puddles.is_empty() && self.weather.glass.is_none() {
-            return Ok(stage);
+            return Ok(frame_scene);
         }
         told(Progress { what: "rain on puddles and glass", parts: [0; 2] });
         let water = self.water_at(time_s)?;
@@ -400,31 +400,31 @@ impl Renderer {
         if let Some(pane) = &mut water.pane {
             rain_on(pane, time_s, told)?;
         }
-        water.lay(&mut stage)?;
-        Ok(stage)
+        water.lay(&mut frame_scene)?;
+        Ok(frame_scene)
     }
 
     /// The drops of a time, or what the device is asked for that finds them.
     fn drops(
         &mut self,
-        stage: &FrameScene,
+        frame_scene: &FrameScene,
         time_s: f64,
         told: &mut dyn FnMut(Progress),
     ) -> Result<Drops, RendererError> {
         if let Some(max_room) = self.drawer.max_drops()
-            && let Some(view) = self.shower.view_at(stage, time_s, max_room)?
+            && let Some(view) = self.shower.view_at(frame_scene, time_s, max_room)?
         {
             return Ok(Drops::OfDevice(Box::new(view)));
         }
         let scenery = scenery(&self.first, &self.weather, &self.loaded);
         let mut passed = |done, all| told(Progress { what: "rain: step", parts: [done, all] });
-        Ok(Drops::Listed(self.shower.at(&*scenery, stage, time_s, &mut passed)?))
+        Ok(Drops::Listed(self.shower.at(&*scenery, frame_scene, time_s, &mut passed)?))
     }
 
-    fn picture_options(&self, stage: &FrameScene, time_s: f64, medium: RainMedium) -> PictureOptions {
+    fn picture_options(&self, frame_scene: &FrameScene, time_s: f64, medium: RainMedium) -> PictureOptions {
         let form = self.refraction();
         PictureOptions {
-            size: stage.size,
+            size: frame_scene.size,
             grid: self.options.samples,
             sky_rays: self.options.sky_rays,
             seed: noise_seed(self.weather.rain.seed, time_s),
@@ -432,7 +432,7 @@ impl Renderer {
                 form,
                 capture_size: form.capture_size(),
                 medium,
-                exposure: Exposure::of_weather(&self.weather.at(time_s), stage.motion, time_s),
+                exposure: Exposure::of_weather(&self.weather.at(time_s), frame_scene.motion, time_s),
                 light: DropLightOptions::of_weather(&self.weather),
                 ..RainOptions::default()
             },
@@ -449,18 +449,19 @@ impl Renderer {
     /// Draws a frame, seen through the pane if there is one, and waits for it if asked to. The plate is kept for so many frames of rays.
     fn draw(
         &self,
-        stage: &FrameScene,
+        frame_scene: &FrameScene,
         drops: &Drops,
         options: &PictureOptions,
         kept_frames: u32,
         waits: bool,
     ) -> Result<Painted, RendererError> {
         let pane = self.water.as_ref().and_then(|water| water.pane.as_ref());
-        let through = pane.map(|pane| through(pane, stage, options)).transpose()?;
+        let through = pane.map(|pane| through(pane, frame_scene, options)).transpose()?;
         // What is seen through a pane glows when that is known.
         let behind = PictureOptions { glow: Glow::default(), ..*options };
         let drawn = if through.is_some() { &behind } else { options };
-        let painted = self.drawer.paint(kept_frames, stage, drops, &self.masks, drawn, through.as_ref())?;
+        let painted =
+            self.drawer.paint(kept_frames, frame_scene, drops, &self.masks, drawn, through.as_ref())?;
         if waits { painted.wait() } else { Ok(painted) }
     }
 }
@@ -471,9 +472,9 @@ fn scenery<'a>(first: &'a FrameScene, weather: &'a Weather, loaded: &'a Loaded) 
         return Box::new(MovingScenery { weather, loaded });
     }
     match &weather.camera.path {
-        Some(path) if !path.is_still() => Box::new(MovingEye { stage: first, weather, loaded }),
+        Some(path) if !path.is_still() => Box::new(MovingEye { frame_scene: first, weather, loaded }),
         // Light or field of view change.
-        _ if !weather.keys.is_empty() => Box::new(MovingEye { stage: first, weather, loaded }),
+        _ if !weather.keys.is_empty() => Box::new(MovingEye { frame_scene: first, weather, loaded }),
         _ => Box::new(Still(first)),
     }
 }
@@ -517,22 +518,26 @@ fn rain_on(pane: &mut WetPane, time_s: f64, told: &mut dyn FnMut(Progress)) -> R
 }
 
 /// The pane that a picture is seen through.
-fn through(pane: &WetPane, stage: &FrameScene, options: &PictureOptions) -> Result<PaneView, RendererError> {
+fn through(
+    pane: &WetPane,
+    frame_scene: &FrameScene,
+    options: &PictureOptions,
+) -> Result<PaneView, RendererError> {
     let PictureOptions { size, grid, sky_rays, seed, .. } = *options;
-    let frame = RenderFrame::new(&stage.data, &stage.viewpoint, size, grid, sky_rays, seed)?;
+    let frame = RenderFrame::new(&frame_scene.data, &frame_scene.viewpoint, size, grid, sky_rays, seed)?;
     let camera = frame.camera;
-    let lighting = SceneView { data: &stage.data, frame: &frame };
+    let lighting = SceneView { data: &frame_scene.data, frame: &frame };
     let of_drops = EnvironmentFrame::new(&camera, &options.rain);
     let (layout, environment) = if options.rain.form == RefractionForm::Direction {
         (of_drops, None)
     } else {
         // The papers' capture does not show all that is round the eye.
         let layout = EnvironmentFrame::new(&camera, &RainOptions::default());
-        (layout, Some(trace_environment(&stage.data, &frame, &layout).texels))
+        (layout, Some(trace_environment(&frame_scene.data, &frame, &layout).texels))
     };
     let texels = layout.texels() as usize;
     let glass = pane.picture(
-        &stage.viewpoint,
+        &frame_scene.viewpoint,
         &camera,
         frame.grid,
         &lighting,

@@ -98,8 +98,8 @@ impl Shower {
     ///
     /// # Errors
     /// [`ShowerError::Sim`] for more than [`MAX_POINTS`](downpour_sim::drips::MAX_POINTS) drip points.
-    pub fn find_drips(&mut self, stage: &FrameScene) -> Result<(), ShowerError> {
-        self.dripping.as_ref().map_or(Ok(()), |dripping| dripping.find(stage))
+    pub fn find_drips(&mut self, frame_scene: &FrameScene) -> Result<(), ShowerError> {
+        self.dripping.as_ref().map_or(Ok(()), |dripping| dripping.find(frame_scene))
     }
 
     /// Takes over the drip points that the rain of the same weather has found.
@@ -124,12 +124,14 @@ impl Shower {
     /// Drops that drip, as a picture shows them.
     fn drips(
         &self,
-        stage: &FrameScene,
+        frame_scene: &FrameScene,
         view: &View,
         least: f64,
         time_s: f64,
     ) -> Result<Vec<FallingDrop>, ShowerError> {
-        self.dripping.as_ref().map_or(Ok(Vec::new()), |dripping| dripping.visible(stage, view, least, time_s))
+        self.dripping
+            .as_ref()
+            .map_or(Ok(Vec::new()), |dripping| dripping.visible(frame_scene, view, least, time_s))
     }
 
     /// True if drops splash: those in closed form, where there is rain.
@@ -160,7 +162,7 @@ impl Shower {
         }
     }
 
-    /// The drops that a picture of a scene shows at a time in seconds; `stage` is the scene at that time. Of work that takes
+    /// The drops that a picture of a scene shows at a time in seconds; `frame_scene` is the scene at that time. Of work that takes
     /// long `passed` is told how many steps are done, and how many there are to do.
     ///
     /// # Errors
@@ -169,14 +171,14 @@ impl Shower {
     pub fn at(
         &mut self,
         scenery: &dyn Scenery,
-        stage: &FrameScene,
+        frame_scene: &FrameScene,
         time_s: f64,
         passed: &mut dyn FnMut(u32, u32),
     ) -> Result<VisibleDrops, ShowerError> {
         let mut visible = match &mut self.form {
             Form::Closed(field) => {
-                let view = View { max_drops: self.weather.rain.max_drops, ..stage.view()? };
-                let obstacles = obstacles(stage);
+                let view = View { max_drops: self.weather.rain.max_drops, ..frame_scene.view()? };
+                let obstacles = obstacles(frame_scene);
                 let mut visible = field.visible_among(&obstacles, &view, time_s)?;
                 let least = visible.resolved.least_pixels;
                 visible.drops.extend(field.bounced(&obstacles, &view, least, time_s, &self.bounce)?);
@@ -185,13 +187,13 @@ impl Shower {
                 }
                 visible
             }
-            Form::Stepped(stepped) => stepped.at(scenery, stage, time_s, passed)?,
+            Form::Stepped(stepped) => stepped.at(scenery, frame_scene, time_s, passed)?,
         };
-        let view = View { max_drops: self.weather.rain.max_drops, ..stage.view()? };
-        let dripped = self.drips(stage, &view, visible.resolved.least_pixels, time_s)?;
+        let view = View { max_drops: self.weather.rain.max_drops, ..frame_scene.view()? };
+        let dripped = self.drips(frame_scene, &view, visible.resolved.least_pixels, time_s)?;
         visible.drops.extend(dripped);
         // A pane keeps the rain outside.
-        if let Some(pane) = pane_plane(&self.weather, &stage.viewpoint)? {
+        if let Some(pane) = pane_plane(&self.weather, &frame_scene.viewpoint)? {
             keep_outside(&mut visible.drops, &pane, &view);
         }
         Ok(visible)
@@ -204,18 +206,18 @@ impl Shower {
     /// As [`Shower::at`].
     pub fn view_at(
         &self,
-        stage: &FrameScene,
+        frame_scene: &FrameScene,
         time_s: f64,
         max_room: u32,
     ) -> Result<Option<ShowerView>, ShowerError> {
         let Form::Closed(field) = &self.form else { return Ok(None) };
         // Room for a quarter more is kept.
         let max_drops = self.weather.rain.max_drops.min(max_room / 5 * 4);
-        let view = View { max_drops, ..stage.view()? };
+        let view = View { max_drops, ..frame_scene.view()? };
         let resolved = field.resolved(&view, time_s, max_room)?;
         let least = resolved.least_pixels;
-        let obstacles = obstacles(stage);
-        let mut droplets = self.drips(stage, &view, least, time_s)?;
+        let obstacles = obstacles(frame_scene);
+        let mut droplets = self.drips(frame_scene, &view, least, time_s)?;
         #[cfg(feature = "wgpu")]
         let (on_device, bounce) = (
             self.splashes.filter(|splashes| splashes.fits_device(field, &view, time_s, &obstacles)),
@@ -229,7 +231,7 @@ impl Shower {
         if let (Some(splashes), None) = (&self.splashes, on_device) {
             droplets.extend(field.splashes(&obstacles, &view, time_s, splashes)?);
         }
-        let pane = pane_plane(&self.weather, &stage.viewpoint)?;
+        let pane = pane_plane(&self.weather, &frame_scene.viewpoint)?;
         if let Some(pane) = &pane {
             keep_outside(&mut droplets, pane, &view);
         }
@@ -237,7 +239,7 @@ impl Shower {
         Ok(Some(ShowerView { field, time_s, view, resolved, pane, droplets, splashes: on_device, bounce }))
     }
 
-    /// The wind that the drops feel at a time in seconds, in its cells and relative to the stage's origin: none blows in
+    /// The wind that the drops feel at a time in seconds, in its cells and relative to the scene's origin: none blows in
     /// objects. `None` where it is the same everywhere, which drops in closed form feel in the lee of objects too.
     ///
     /// # Errors
@@ -259,7 +261,7 @@ impl Shower {
     /// As [`Shower::at`].
     pub fn medium(
         &self,
-        stage: &FrameScene,
+        frame_scene: &FrameScene,
         resolved: &Resolved,
         masks: &DropMasks,
         time_s: f64,
@@ -270,15 +272,15 @@ impl Shower {
                 _ => ExtinctionEfficiency::Camera,
             },
             velocity: (self.weather.wind.air().velocity(time_s) - DVec3::Y * fall_speed(&self.law)).as_vec3(),
-            origin: stage.origin,
-            pane: pane_plane(&self.weather, &stage.viewpoint)?,
+            origin: frame_scene.origin,
+            pane: pane_plane(&self.weather, &frame_scene.viewpoint)?,
         };
-        let with_fog = |medium: RainMedium| medium.with_fog(self.weather.fog.as_ref(), stage.origin.y);
+        let with_fog = |medium: RainMedium| medium.with_fog(self.weather.fog.as_ref(), frame_scene.origin.y);
         if self.weather.keys.rate().is_none() {
             return Ok(with_fog(RainMedium::new(&self.law, resolved, masks, &options)?));
         }
         // The drops about the eye pass the height of the rate at another time.
-        let above = stage.view()?.eye.y - self.weather.rain.rate_height_m;
+        let above = frame_scene.view()?.eye.y - self.weather.rain.rate_height_m;
         let passing_s = time_s + above / fall_speed(&self.law).max(0.1);
         let rain = self.weather.rain_at(passing_s);
         Ok(with_fog(RainMedium::new(&rain.sizes()?, resolved, masks, &options)?))
@@ -289,21 +291,21 @@ impl Shower {
     ///
     /// # Errors
     /// As [`Shower::at`].
-    pub fn measured_rate_mm_h(&self, stage: &FrameScene, time_s: f64) -> Result<f64, ShowerError> {
+    pub fn measured_rate_mm_h(&self, frame_scene: &FrameScene, time_s: f64) -> Result<f64, ShowerError> {
         match &self.form {
-            Form::Closed(field) => Ok(field.measured_rate_mm_h(stage.view()?.eye, time_s)?),
+            Form::Closed(field) => Ok(field.measured_rate_mm_h(frame_scene.view()?.eye, time_s)?),
             Form::Stepped(stepped) => Ok(stepped.measured_rate_mm_h()),
         }
     }
 }
 
 /// What stops drops in a scene.
-fn obstacles(stage: &FrameScene) -> Obstacles<'_> {
+fn obstacles(frame_scene: &FrameScene) -> Obstacles<'_> {
     Obstacles {
-        nodes: &stage.data.nodes,
-        triangles: &stage.data.triangles,
-        holes: Some(&stage.data),
-        origin: stage.origin,
+        nodes: &frame_scene.data.nodes,
+        triangles: &frame_scene.data.triangles,
+        holes: Some(&frame_scene.data),
+        origin: frame_scene.origin,
     }
 }
 

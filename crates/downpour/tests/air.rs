@@ -37,8 +37,9 @@ fn drops_fall_at_the_speed_of_the_weathers_air() -> Result<(), Box<dyn Error>> {
         for (temperature_c, pressure_hpa, speeds) in SPEEDS {
             let weather = weather(volume, temperature_c, pressure_hpa)?;
             let loaded = load(&weather, &NoFiles, &mut Budget::default())?;
-            let stage = FrameScene::new(&weather, &loaded, 0.5)?;
-            let drops = Shower::new(&weather)?.at(&Still(&stage), &stage, 0.5, &mut |_, _| ())?.drops;
+            let frame_scene = FrameScene::new(&weather, &loaded, 0.5)?;
+            let drops =
+                Shower::new(&weather)?.at(&Still(&frame_scene), &frame_scene, 0.5, &mut |_, _| ())?.drops;
             for (mm, expected) in speeds {
                 let of_size =
                     drops.iter().filter(|drop| (f64::from(drop.diameter) * 1.0e3 / mm - 1.0).abs() < 0.02);

@@ -36,9 +36,9 @@ fn weather(volume: &str, speed_m_s: f64, pane: bool) -> String {
 fn drops(text: &str, time_s: f64) -> Result<Vec<FallingDrop>, Box<dyn Error>> {
     let weather = Weather::parse("w.toml", text)?;
     let loaded = load(&weather, &NoFiles, &mut Budget::default())?;
-    let stage = FrameScene::new(&weather, &loaded, time_s)?;
+    let frame_scene = FrameScene::new(&weather, &loaded, time_s)?;
     let scenery = MovingScenery { weather: &weather, loaded: &loaded };
-    Ok(Shower::new(&weather)?.at(&scenery, &stage, time_s, &mut |_, _| ())?.drops)
+    Ok(Shower::new(&weather)?.at(&scenery, &frame_scene, time_s, &mut |_, _| ())?.drops)
 }
 
 /// Distances beyond the plane of the pane, m, at both ends of the part of the exposure in which a drop is there.

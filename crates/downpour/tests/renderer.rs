@@ -243,8 +243,8 @@ fn stepped_rain_of_a_scene_is_that_of_the_time() {
         is_that_of_the_time(name, |times| {
             let mut shower = Shower::new(&source.weather).unwrap();
             let mut at = |time_s: f64| {
-                let stage = FrameScene::new(&source.weather, &source.loaded, time_s).unwrap();
-                shower.at(&scenery, &stage, time_s, &mut |_, _| ()).unwrap()
+                let frame_scene = FrameScene::new(&source.weather, &source.loaded, time_s).unwrap();
+                shower.at(&scenery, &frame_scene, time_s, &mut |_, _| ()).unwrap()
             };
             times.iter().map(|&time| at(time)).last().unwrap()
         });

@@ -127,7 +127,9 @@ fn bvh_walk(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32, any: b
                     limit = hit.x;
                     best = BvhHit(hit.x, triangle.index, hit.y, hit.z);
                     if any && triangle.lets_through == 0u {
-                        return best;
+                        // The walk ends as one that has seen all: lanes that leave it in another way are waited for.
+                        depth = 0u;
+                        break;
                     }
                 }
             }

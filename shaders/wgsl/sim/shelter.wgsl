@@ -32,7 +32,7 @@ struct ShelterFrame {
 
 // True if nothing is hit within a distance.
 fn shelter_clear(start: vec3f, direction: vec3f, distance: f32) -> bool {
-    return shelter_blocker(start, direction, SHELTER_CLEAR, min(distance, BVH_FAR)).distance < 0.0;
+    return shelter_hit_any(start, direction, SHELTER_CLEAR, min(distance, BVH_FAR)).distance < 0.0;
 }
 
 // Drift of drops of a terminal speed: row 0 up to the opening of the shutter, others up to the quarters before.

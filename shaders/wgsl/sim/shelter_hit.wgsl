@@ -7,6 +7,6 @@ fn shelter_hit(start: vec3f, way: vec3f, near: f32, far: f32) -> BvhHit {
 }
 
 // Any hit from a distance on, in lengths of `way`; its distance is below 0 if there is none up to another.
-fn shelter_blocker(start: vec3f, way: vec3f, near: f32, far: f32) -> BvhHit {
+fn shelter_hit_any(start: vec3f, way: vec3f, near: f32, far: f32) -> BvhHit {
     return bvh_blocker(start, way, near, far);
 }

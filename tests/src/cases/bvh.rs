@@ -4,15 +4,15 @@ use downpour_bvh::{BvhNode, BvhTriangle, bvh_enter, bvh_inverse, bvh_is_before, 
 use downpour_math::rng::rng_unit;
 use downpour_shaders::bvh::{BVH, BVH_EDGE_SLACK};
 
-use crate::Domain::{Fixed, Made, OneOf, Or, Uniform, Unit3};
+use crate::Domain::{Below, Fixed, Made, OneOf, Or, Uniform, Unit3};
 use crate::words::{Args, IntoWords as _};
 use crate::{FunctionCase, Tol};
 
 fn met(a: &mut Args<'_>) -> Vec<u32> {
     let corner = a.f32s();
     let index = a.f32() as u32;
-    let (edge_1, edge_2) = (a.f32s(), a.f32s());
-    let triangle = BvhTriangle { corner, index, edge_1, lets_through: 0, edge_2, padding: 0 };
+    let (edge_1, lets_through) = (a.f32s(), a.u32());
+    let triangle = BvhTriangle { corner, index, edge_1, lets_through, edge_2: a.f32s(), padding: 0 };
     bvh_triangle(&triangle, a.f32s(), a.f32s()).words()
 }
 
@@ -83,6 +83,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 Uniform(0.8, 1.2),
                 Uniform(-0.1, 0.1),
                 Uniform(-0.2, 0.2),
+                Below(2),
                 Uniform(-0.1, 0.1),
                 Uniform(0.8, 1.2),
                 Uniform(-0.2, 0.2),
@@ -105,7 +106,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &BVH,
             &[
                 [none; 4].as_slice(),
-                &[one, none, none],
+                &[one, none, none, Below(2)],
                 &[none, one, none],
                 &[
                     OneOf(&[

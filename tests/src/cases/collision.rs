@@ -133,7 +133,8 @@ fn column(a: &mut Args<'_>) -> Vec<u32> {
 
 fn triangle(args: &mut Args<'_>) -> BvhTriangle {
     let (corner, index) = (args.f32s(), args.u32());
-    BvhTriangle { corner, index, edge_1: args.f32s(), lets_through: 0, edge_2: args.f32s(), padding: 0 }
+    let (edge_1, lets_through) = (args.f32s(), args.u32());
+    BvhTriangle { corner, index, edge_1, lets_through, edge_2: args.f32s(), padding: 0 }
 }
 
 /// The cases.
@@ -147,7 +148,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
     let a_triangle = Made(|r| {
         let [corner, edge_1, edge_2] =
             [0, 1, 2].map(|k| more(r, k).map(|x| (x - 0.5).to_bits())[..3].to_vec());
-        [corner, vec![r[0] % 9], edge_1, edge_2].concat()
+        [corner, vec![r[0] % 9], edge_1, vec![r[1] % 2], edge_2].concat()
     });
     let (near, fraction, offset) = (Uniform(-20.0, 20.0), Uniform(-1.0, 1.0), Uniform(-0.5, 0.5));
     vec![
@@ -302,7 +303,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &COLLISION_MAP,
             &[
                 [Fixed(0.0); 3].as_slice(),
-                &[Below(9), Fixed(1.0), Fixed(0.0), Fixed(0.0), Fixed(0.0), Fixed(1.0), Fixed(0.0)],
+                &[Below(9), Fixed(1.0), Fixed(0.0), Fixed(0.0), Below(2), Fixed(0.0), Fixed(1.0), Fixed(0.0)],
                 &[OneOf(&[-1.0, 0.0, 1.0]); 3],
             ]
             .concat(),

@@ -305,13 +305,13 @@ fn pane(keys: &str) -> GlassPicture {
         drop_model: None,
         warnings: Vec::new(),
     };
-    let stage = FrameScene::new(&weather, &loaded, 0.0).expect("a stage");
-    let mut pane = WetPane::new(&weather, &stage.viewpoint, 0.0).expect("a lattice").expect("a pane");
+    let frame_scene = FrameScene::new(&weather, &loaded, 0.0).expect("a frame's scene");
+    let mut pane = WetPane::new(&weather, &frame_scene.viewpoint, 0.0).expect("a lattice").expect("a pane");
     pane.advance(0.0).expect("time");
-    let frame = RenderFrame::new(&stage.data, &stage.viewpoint, SIZE, 1, 0, 0).expect("a frame");
+    let frame = RenderFrame::new(&frame_scene.data, &frame_scene.viewpoint, SIZE, 1, 0, 0).expect("a frame");
     let texels = (4 * CAPTURE * CAPTURE - 1) / 3;
-    let lighting = SceneView { data: &stage.data, frame: &frame };
-    pane.picture(&stage.viewpoint, &frame.camera, frame.grid, &lighting, texels as usize, 0.1)
+    let lighting = SceneView { data: &frame_scene.data, frame: &frame };
+    pane.picture(&frame_scene.viewpoint, &frame.camera, frame.grid, &lighting, texels as usize, 0.1)
         .expect("a picture")
 }
 

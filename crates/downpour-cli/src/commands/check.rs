@@ -41,20 +41,20 @@ impl CheckArguments {
         self.input.check()?;
         let input = doing("reading", false, || self.input.read(&mut Budget::default()))?;
         let streaks = self.streaks.read(&input.weather)?;
-        let stage = doing("setting the scene", false, || {
+        let frame_scene = doing("setting the scene", false, || {
             FrameScene::new(&input.weather, &input.loaded, self.input.time)
         })?;
-        say_missing(&input.weather, &input.loaded, &stage, stream::message);
-        let mut entries = scene(&input, &stage);
+        say_missing(&input.weather, &input.loaded, &frame_scene, stream::message);
+        let mut entries = scene(&input, &frame_scene);
         entries.extend(light(&input));
         entries.extend(rain(&input)?);
         entries.extend(motion(&input)?);
         entries.push(Entry::new("streak_atlas", "streak atlas", Datum::Word(streaks.text()), ""));
-        entries.extend(water(&input, &stage)?);
-        let (of_pane, pane_bytes) = pane(&input, &stage, self.input.time)?;
+        entries.extend(water(&input, &frame_scene)?);
+        let (of_pane, pane_bytes) = pane(&input, &frame_scene, self.input.time)?;
         entries.extend(of_pane);
         let [width, height] = input.weather.size.map(u64::from);
-        let bytes = stage.bytes() + width * height * BYTES_PER_PIXEL + pane_bytes + streaks.bytes();
+        let bytes = frame_scene.bytes() + width * height * BYTES_PER_PIXEL + pane_bytes + streaks.bytes();
         entries.push(Entry::new("memory_mib", "memory, about", Datum::Computed(mebibytes(bytes), 3), "MiB"));
         stream::print(&if self.json { listing::json(&entries) } else { listing::text(&entries) })?;
         match streaks {
@@ -72,7 +72,7 @@ fn count(key: &'static str, label: &'static str, number: usize) -> Entry {
     Entry::new(key, label, Datum::Count(number as u64), "")
 }
 
-fn scene(input: &Input, stage: &FrameScene) -> Vec<Entry> {
+fn scene(input: &Input, frame_scene: &FrameScene) -> Vec<Entry> {
     use Datum::{Computed, Triple, Word};
     let scene = &input.loaded.scene;
     let playing: Vec<&str> = input
@@ -83,7 +83,7 @@ fn scene(input: &Input, stage: &FrameScene) -> Vec<Entry> {
         .filter_map(|&index| scene.animations.get(index))
         .map(|animation| if animation.name.is_empty() { "without a name" } else { animation.name.as_str() })
         .collect();
-    let camera = match stage.camera {
+    let camera = match frame_scene.camera {
         CameraChoice::Weather => "of the weather file".to_owned(),
         CameraChoice::Scene(index) => {
             let name = scene.cameras.get(index).map_or("", |camera| camera.name.as_str());
@@ -92,10 +92,10 @@ fn scene(input: &Input, stage: &FrameScene) -> Vec<Entry> {
         CameraChoice::Framing => "in front of all that there is".to_owned(),
         _ => "at the height of a person's eyes".to_owned(),
     };
-    let eye = (stage.origin + stage.viewpoint.eye.as_dvec3()).to_array();
-    let forward = stage.viewpoint.forward.as_dvec3().to_array();
-    let fov = f64::from(stage.viewpoint.fov_y).to_degrees();
-    let [width, height] = stage.size.map(|edge| edge as usize);
+    let eye = (frame_scene.origin + frame_scene.viewpoint.eye.as_dvec3()).to_array();
+    let forward = frame_scene.viewpoint.forward.as_dvec3().to_array();
+    let fov = f64::from(frame_scene.viewpoint.fov_y).to_degrees();
+    let [width, height] = frame_scene.size.map(|edge| edge as usize);
     let lens = &input.weather.camera;
     let observer = match lens.observer {
         Observer::Camera => "camera".to_owned(),
@@ -105,8 +105,8 @@ fn scene(input: &Input, stage: &FrameScene) -> Vec<Entry> {
     let strokes = lightning.flashes().iter().map(|flash| flash.strokes.len()).sum();
     let per_minute = lightning.storm().map_or(0.0, |storm| storm.per_minute);
     vec![
-        count("triangles", "triangles", stage.triangles),
-        count("instances", "instances of meshes", stage.instances),
+        count("triangles", "triangles", frame_scene.triangles),
+        count("instances", "instances of meshes", frame_scene.instances),
         count("materials", "materials", scene.materials.len()),
         count("textures", "textures", scene.textures.len()),
         Entry::new(
@@ -115,7 +115,7 @@ fn scene(input: &Input, stage: &FrameScene) -> Vec<Entry> {
             Computed(mebibytes(texture_bytes(&scene.textures)), 3),
             "MiB",
         ),
-        count("lights", "lamps", stage.lamps),
+        count("lights", "lamps", frame_scene.lamps),
         count("flash_strokes", "strokes of lightning by hand", strokes),
         count("flash_strokes_left_out", "those that the limit of flashing leaves out", lightning.left_out()),
         Entry::new("flashes_per_minute", "flashes from a seed", Computed(per_minute, 4), "1/min"),
@@ -189,8 +189,8 @@ fn motion(input: &Input) -> Result<Vec<Entry>, Failure> {
 }
 
 /// Water on the ground.
-fn water(input: &Input, stage: &FrameScene) -> Result<Vec<Entry>, Failure> {
-    let ground = WetGround::new(&input.weather, &input.loaded, stage, 0.0)?;
+fn water(input: &Input, frame_scene: &FrameScene) -> Result<Vec<Entry>, Failure> {
+    let ground = WetGround::new(&input.weather, &input.loaded, frame_scene, 0.0)?;
     let sum = |of: fn(&PuddleMap) -> f32| {
         ground.iter().flat_map(WetGround::maps).map(|map| f64::from(of(map))).sum::<f64>()
     };
@@ -217,8 +217,8 @@ fn water(input: &Input, stage: &FrameScene) -> Result<Vec<Entry>, Failure> {
 }
 
 /// Pane in front of the camera, and its memory.
-fn pane(input: &Input, stage: &FrameScene, first_s: f64) -> Result<(Vec<Entry>, u64), Failure> {
-    let Some(wet) = WetPane::new(&input.weather, &stage.viewpoint, first_s)? else {
+fn pane(input: &Input, frame_scene: &FrameScene, first_s: f64) -> Result<(Vec<Entry>, u64), Failure> {
+    let Some(wet) = WetPane::new(&input.weather, &frame_scene.viewpoint, first_s)? else {
         return Ok((
             vec![Entry::new("pane", "pane in front of the camera", Datum::Unbounded("none"), "")],
             0,

@@ -87,14 +87,14 @@ pub(crate) fn rate_text(weather: &Weather) -> String {
 }
 
 /// Prints the parts of a scene that were dropped, repaired or missing.
-pub(crate) fn say_missing(weather: &Weather, loaded: &Loaded, stage: &FrameScene, say: impl Fn(&str)) {
+pub(crate) fn say_missing(weather: &Weather, loaded: &Loaded, frame_scene: &FrameScene, say: impl Fn(&str)) {
     say_warnings(&weather.name, &loaded.warnings, &say);
     say_cores(weather, &say);
-    if stage.left_out > 0 {
+    if frame_scene.left_out > 0 {
         let what = "not drawn: their transforms have no inverse or lead too far";
-        say(&format!("warning: {}: {} meshes {what}", weather.name, stage.left_out));
+        say(&format!("warning: {}: {} meshes {what}", weather.name, frame_scene.left_out));
     }
-    if stage.triangles == 0 {
+    if frame_scene.triangles == 0 {
         say(&format!("warning: {}: no triangles: a picture of the sky alone", weather.name));
     }
 }

@@ -142,9 +142,9 @@ impl WindArguments {
             return Ok(None);
         }
         let input = self.input()?;
-        let stage = FrameScene::new(&input.weather, &input.loaded, self.time)?;
-        let field = Shower::new(&input.weather)?.wind_field(&Still(&stage), self.time)?;
-        Ok(field.map(|field| (field, stage.origin.as_vec3())))
+        let frame_scene = FrameScene::new(&input.weather, &input.loaded, self.time)?;
+        let field = Shower::new(&input.weather)?.wind_field(&Still(&frame_scene), self.time)?;
+        Ok(field.map(|field| (field, frame_scene.origin.as_vec3())))
     }
 
     /// The weather with its scene.

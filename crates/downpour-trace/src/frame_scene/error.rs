@@ -2,7 +2,7 @@
 
 use downpour_render::RenderError;
 
-/// Error of a stage.
+/// Error of a frame.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FrameSceneError {

@@ -1,4 +1,4 @@
-//! A stage in the light of lightning alone: parallel light, and the clouds that it lights.
+//! A scene in the light of lightning alone: parallel light, and the clouds that it lights.
 //!
 //! Light adds up, so that a picture with a flash is the sum of the picture without it and of one that has no other light. So
 //! the second one has an exposure of its own: streaks are as long as the flash, and what a flash lights is as sharp as it is short.
@@ -37,11 +37,11 @@ const CONTRAST: f32 = 2.2;
 const CLOUD_SEED: [u32; 2] = [2003, 1982];
 
 impl FrameScene {
-    /// The stage in the light of flashes alone, at the time in seconds at which this one is: no sky, sun, lamp or surface shines but
+    /// The scene in the light of flashes alone, at the time in seconds at which this one is: no sky, sun, lamp or surface shines but
     /// the flashes and the clouds that they light. Puddles and a pane are removed.
     #[must_use]
     pub fn in_flash(&self, weather: &Weather, time_s: f64, flashes: &[FlashLight]) -> Self {
-        let mut stage = self.clone();
+        let mut frame_scene = self.clone();
         let lights: Vec<LightSource> = flashes
             .iter()
             .map(|flash| LightSource::Directional {
@@ -50,14 +50,14 @@ impl FrameScene {
             })
             .collect();
         let sky = lit_clouds(flashes);
-        let data = &mut stage.data;
+        let data = &mut frame_scene.data;
         data.remove_emission();
         data.set_lights(&lights);
         data.set_wetness(SceneWetness::of(weather, time_s, self.origin).as_ref());
         data.sky = Arc::new(sky.texels);
         data.sky_levels = sky.levels;
         data.sky_irradiance = sky.irradiance;
-        stage
+        frame_scene
     }
 }
 

@@ -1,4 +1,4 @@
-//! Stages of small scenes that are put together here.
+//! Frames of small scenes that are put together here.
 
 use downpour_math::OutOfRange;
 use std::sync::Arc;

@@ -24,7 +24,7 @@ pub struct Drawn {
     /// The camera that it is seen by.
     pub view: PictureView,
     /// The scene, for rays to its surfaces.
-    pub stage: Arc<FrameScene>,
+    pub frame_scene: Arc<FrameScene>,
     /// Number of drops in it.
     pub drops_drawn: usize,
     /// The drops that it could show, and the indices of those in it, nearest first, where they were asked for.
@@ -142,19 +142,18 @@ impl Drawn {
     }
 
     fn nearest(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
-        let origin = (origin - self.stage.origin).as_vec3().to_array();
-        let data = &self.stage.data;
+        let origin = (origin - self.frame_scene.origin).as_vec3().to_array();
+        let data = &self.frame_scene.data;
         let direction = direction.as_vec3().to_array();
-        let hit =
-            downpour::bvh::bvh_hit(&data.nodes, &data.triangles, origin, direction, 0.0, f32::INFINITY);
+        let hit = downpour::bvh::bvh_hit(&data.nodes, &data.triangles, origin, direction, 0.0, f32::INFINITY);
         hit.map(|hit| f64::from(hit.distance))
     }
 
     /// Corners of the box round the scene, m.
     #[must_use]
     pub fn bounds(&self) -> (DVec3, DVec3) {
-        let (low, high) = self.stage.data.bounds();
-        (low.as_dvec3() + self.stage.origin, high.as_dvec3() + self.stage.origin)
+        let (low, high) = self.frame_scene.data.bounds();
+        (low.as_dvec3() + self.frame_scene.origin, high.as_dvec3() + self.frame_scene.origin)
     }
 
     /// The list of drops that are drawn, as `downpour render --dump-drops` writes it, where it was asked for.

@@ -89,17 +89,17 @@ impl Machine {
             let pixels: Vec<[u8; 3]> = frame.pixels.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
             (frame.size, pixels, frame.drops_drawn, frame.passes)
         };
-        let stage = Arc::new(renderer.first_stage().clone());
+        let frame_scene = Arc::new(renderer.first_stage().clone());
         Ok(Drawn {
             number,
             revision: request.revision,
             time_s: request.time_s,
             size,
             samples: *samples,
-            view: view(&weather, &stage, request.time_s),
+            view: view(&weather, &frame_scene, request.time_s),
             histogram: Histogram::of(&pixels),
             pixels,
-            stage,
+            frame_scene,
             drops_drawn,
             drops,
             passes,
@@ -155,17 +155,21 @@ fn is_lost(error: &RendererError) -> bool {
 }
 
 /// The camera of a picture.
-fn view(weather: &Weather, stage: &downpour::trace::frame_scene::FrameScene, time_s: f64) -> PictureView {
-    let [width, height] = stage.size.map(f64::from);
+fn view(
+    weather: &Weather,
+    frame_scene: &downpour::trace::frame_scene::FrameScene,
+    time_s: f64,
+) -> PictureView {
+    let [width, height] = frame_scene.size.map(f64::from);
     let now = weather.at(time_s);
-    let first = &stage.viewpoint;
+    let first = &frame_scene.viewpoint;
     let fov = now.camera.fov.unwrap_or(f64::from(first.fov_y));
     let (eye, forward) = match &now.camera.path {
         Some(path) => {
             let pose = path.at(time_s);
             (pose.position, pose.forward)
         }
-        None => (first.eye.as_dvec3() + stage.origin, first.forward.as_dvec3()),
+        None => (first.eye.as_dvec3() + frame_scene.origin, first.forward.as_dvec3()),
     };
     let mut view = PictureView::new(eye, forward, fov, width / height);
     if now.camera.path.is_none() {

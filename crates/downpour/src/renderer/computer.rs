@@ -273,19 +273,19 @@ impl Drawer {
     pub(super) fn display(
         &self,
         of: downpour_trace::gpu::PictureUse,
-        stage: &FrameScene,
+        frame_scene: &FrameScene,
         drops: &Drops,
         masks: &DropMasks,
         options: &PictureOptions,
     ) -> Result<Option<downpour_trace::gpu::DisplayReadback>, RendererError> {
-        self.on_gpu.as_ref().map_or(Ok(None), |on_gpu| on_gpu.display(of, stage, drops, masks, options))
+        self.on_gpu.as_ref().map_or(Ok(None), |on_gpu| on_gpu.display(of, frame_scene, drops, masks, options))
     }
 
     /// Draws a frame, seen through a pane if there is one. The plate of a scene that stands still is kept for so many frames of rays.
     pub(super) fn paint(
         &self,
         kept_frames: u32,
-        stage: &FrameScene,
+        frame_scene: &FrameScene,
         drops: &Drops,
         masks: &DropMasks,
         options: &PictureOptions,
@@ -293,16 +293,16 @@ impl Drawer {
     ) -> Result<Painted, RendererError> {
         #[cfg(feature = "wgpu")]
         if let Some(on_gpu) = &self.on_gpu {
-            return on_gpu.paint(kept_frames, stage, drops, masks, options, through);
+            return on_gpu.paint(kept_frames, frame_scene, drops, masks, options, through);
         }
         let drops = match drops {
-            Drops::Listed(drops) => stage.place(&drops.drops),
-            Drops::OfDevice(shown) => stage.place(&shown.droplets),
+            Drops::Listed(drops) => frame_scene.place(&drops.drops),
+            Drops::OfDevice(shown) => frame_scene.place(&shown.droplets),
         };
         let mut kept = self.kept.borrow_mut();
         // Pictures that keep none leave that of others alone.
         let mut own = if kept_frames > 0 { kept.take() } else { None };
-        let (scene, eye) = (&stage.data, &stage.viewpoint);
+        let (scene, eye) = (&frame_scene.data, &frame_scene.viewpoint);
         let mut picture = render_picture_on(&mut own, kept_frames, scene, eye, &drops, masks, options)?;
         if kept_frames > 0 {
             *kept = own;

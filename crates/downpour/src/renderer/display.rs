@@ -86,16 +86,16 @@ impl Renderer {
             return Ok(None);
         }
         let told = &mut |_| {};
-        let stage = self.wet(time_s, told)?;
-        let drops = self.drops(&stage, time_s, told)?;
-        let medium = self.shower.medium(&stage, drops.resolved(), &self.masks, time_s)?;
-        let options = self.picture_options(&stage, time_s, medium);
+        let frame_scene = self.wet(time_s, told)?;
+        let drops = self.drops(&frame_scene, time_s, told)?;
+        let medium = self.shower.medium(&frame_scene, drops.resolved(), &self.masks, time_s)?;
+        let options = self.picture_options(&frame_scene, time_s, medium);
         let exposure = exposure * self.weather.exposure_factor(time_s);
         let of = PictureUse {
             kept_frames: self.options.kept_frames,
             tone: Some((exposure, self.weather.camera.tone)),
         };
-        let read = self.drawer.display(of, &stage, &drops, &self.masks, &options)?;
+        let read = self.drawer.display(of, &frame_scene, &drops, &self.masks, &options)?;
         self.drawn += 1;
         let begin_ms = begin.elapsed().as_secs_f64() * 1.0e3;
         let pixels = |read| Pending::Pixels { read: Box::new(read), time_s, exposure, begin, begin_ms };

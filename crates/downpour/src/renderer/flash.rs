@@ -38,52 +38,52 @@ impl Renderer {
             return Ok(Vec::new());
         }
         told(Progress { what: "lightning", parts: [0; 2] });
-        let stage = self.stage(time_s)?;
-        parts.iter().map(|part| self.flash(&stage, time_s, drops, part)).collect()
+        let frame_scene = self.frame_scene(time_s)?;
+        parts.iter().map(|part| self.flash(&frame_scene, time_s, drops, part)).collect()
     }
 
     /// A part of the exposure in which flashes shine.
     fn flash(
         &self,
-        stage: &FrameScene,
+        frame_scene: &FrameScene,
         time_s: f64,
         drops: &Drops,
         part: &FlashExposure,
     ) -> Result<Painted, RendererError> {
-        let mut stage = stage.in_flash(&self.weather, time_s, &part.lights);
+        let mut frame_scene = frame_scene.in_flash(&self.weather, time_s, &part.lights);
         if let Some(water) = &self.water {
-            water.lay(&mut stage)?;
+            water.lay(&mut frame_scene)?;
         }
         let [begin_s, end_s] = part.lit_s;
         let later_s = 0.5 * (begin_s + end_s) - time_s;
-        stage.shutter_s = end_s - begin_s;
+        frame_scene.shutter_s = end_s - begin_s;
         let drops = match drops {
-            Drops::Listed(drops) => Drops::Listed(later(drops, &stage, later_s)),
+            Drops::Listed(drops) => Drops::Listed(later(drops, &frame_scene, later_s)),
             Drops::OfDevice(shown) => {
                 // The picture has the eye of the frame, and drops relative to it.
-                let mut moved = stage.clone();
+                let mut moved = frame_scene.clone();
                 moved.viewpoint.eye += moved.motion.velocity * later_s as f32;
                 let max_room = self.drawer.max_drops().unwrap_or(u32::MAX);
                 let view = self.shower.view_at(&moved, time_s + later_s, max_room)?;
                 Drops::OfDevice(view.map_or_else(|| shown.clone(), Box::new))
             }
         };
-        let medium = self.shower.medium(&stage, drops.resolved(), &self.masks, time_s + later_s)?;
-        let mut options = self.picture_options(&stage, time_s, medium);
+        let medium = self.shower.medium(&frame_scene, drops.resolved(), &self.masks, time_s + later_s)?;
+        let mut options = self.picture_options(&frame_scene, time_s, medium);
         options.rain.exposure = Exposure {
-            shutter_s: stage.shutter_s,
+            shutter_s: frame_scene.shutter_s,
             time_s: time_s + later_s,
             response: TemporalResponse::Shutter,
             ..options.rain.exposure
         };
-        self.draw(&stage, &drops, &options, 0, false)
+        self.draw(&frame_scene, &drops, &options, 0, false)
     }
 }
 
-/// Drops so many seconds later, as the eye of a stage sees them that moves with them meanwhile.
-fn later(drops: &VisibleDrops, stage: &FrameScene, later_s: f64) -> VisibleDrops {
-    let eye = stage.origin + stage.viewpoint.eye.as_dvec3();
-    let motion = stage.motion;
+/// Drops so many seconds later, as the eye of a frame sees them that moves with them meanwhile.
+fn later(drops: &VisibleDrops, frame_scene: &FrameScene, later_s: f64) -> VisibleDrops {
+    let eye = frame_scene.origin + frame_scene.viewpoint.eye.as_dvec3();
+    let motion = frame_scene.motion;
     let moved = |drop: &FallingDrop| {
         let before = EyeDrop::new(drop, eye);
         let offset = before.eye_drop_position(motion.velocity, motion.turning, later_s as f32);

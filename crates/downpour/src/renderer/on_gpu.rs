@@ -48,29 +48,36 @@ impl OnGpu {
     pub(super) fn display(
         &self,
         of: PictureUse,
-        stage: &FrameScene,
+        frame_scene: &FrameScene,
         drops: &Drops,
         masks: &DropMasks,
         options: &PictureOptions,
     ) -> Result<Option<DisplayReadback>, RendererError> {
-        Ok(self.drawn(of, stage, drops, masks, options)?.begin_display()?)
+        Ok(self.drawn(of, frame_scene, drops, masks, options)?.begin_display()?)
     }
 
     fn drawn(
         &self,
         of: PictureUse,
-        stage: &FrameScene,
+        frame_scene: &FrameScene,
         drops: &Drops,
         masks: &DropMasks,
         options: &PictureOptions,
     ) -> Result<PictureOnGpu, RendererError> {
         match drops {
             Drops::Listed(drops) => {
-                let drops = stage.place(&drops.drops);
+                let drops = frame_scene.place(&drops.drops);
                 let drops = PictureDrops::Listed(&drops);
-                Ok(self.renderer.draw_for(of, &stage.data, &stage.viewpoint, drops, masks, options)?)
+                Ok(self.renderer.draw_for(
+                    of,
+                    &frame_scene.data,
+                    &frame_scene.viewpoint,
+                    drops,
+                    masks,
+                    options,
+                )?)
             }
-            Drops::OfDevice(shown) => self.draw(of, stage, shown, masks, options),
+            Drops::OfDevice(shown) => self.draw(of, frame_scene, shown, masks, options),
         }
     }
 
@@ -78,14 +85,14 @@ impl OnGpu {
     pub(super) fn paint(
         &self,
         kept_frames: u32,
-        stage: &FrameScene,
+        frame_scene: &FrameScene,
         drops: &Drops,
         masks: &DropMasks,
         options: &PictureOptions,
         through: Option<&PaneView>,
     ) -> Result<Painted, RendererError> {
         let of = PictureUse { kept_frames, tone: None };
-        let mut drawn = self.drawn(of, stage, drops, masks, options)?;
+        let mut drawn = self.drawn(of, frame_scene, drops, masks, options)?;
         let Some(PaneView { glass, environment, glow, camera }) = through else {
             return Ok(Painted::OnItsWay { read: Box::new(drawn.begin_read()?), through_glass: None });
         };
@@ -103,7 +110,7 @@ impl OnGpu {
     fn draw(
         &self,
         of: PictureUse,
-        stage: &FrameScene,
+        frame_scene: &FrameScene,
         shown: &ShowerView,
         masks: &DropMasks,
         options: &PictureOptions,
@@ -126,8 +133,9 @@ impl OnGpu {
             splashes: shown.splashes.as_ref(),
             bounce: shown.bounce.as_ref(),
         };
-        let drops = PictureDrops::Field(FieldDrops { field: rain, on_gpu, search, origin: stage.origin });
-        Ok(self.renderer.draw_for(of, &stage.data, &stage.viewpoint, drops, masks, options)?)
+        let drops =
+            PictureDrops::Field(FieldDrops { field: rain, on_gpu, search, origin: frame_scene.origin });
+        Ok(self.renderer.draw_for(of, &frame_scene.data, &frame_scene.viewpoint, drops, masks, options)?)
     }
 
     /// The pipelines of panes.

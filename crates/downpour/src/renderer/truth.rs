@@ -59,7 +59,7 @@ impl Truth {
 /// What the truth about a frame is found from.
 #[derive(Debug)]
 pub(super) struct TruthOf {
-    pub(super) stage: FrameScene,
+    pub(super) frame_scene: FrameScene,
     pub(super) masks: Arc<DropMasks>,
     pub(super) options: PictureOptions,
 }
@@ -67,10 +67,11 @@ pub(super) struct TruthOf {
 impl TruthOf {
     /// The truth about a frame with its drops.
     pub(super) fn find(&self, picture: &Picture, drops: &VisibleDrops) -> Result<Truth, RendererError> {
-        let Self { stage, masks, options } = self;
-        let frame = picture_frame(&stage.data, &stage.viewpoint, options)?;
-        let placed = stage.place(&drops.drops);
-        let rain = Rain::new(&frame.camera, stage.viewpoint.eye.as_dvec3(), &placed, masks, &options.rain);
+        let Self { frame_scene, masks, options } = self;
+        let frame = picture_frame(&frame_scene.data, &frame_scene.viewpoint, options)?;
+        let placed = frame_scene.place(&drops.drops);
+        let rain =
+            Rain::new(&frame.camera, frame_scene.viewpoint.eye.as_dvec3(), &placed, masks, &options.rain);
         let shown = rain.truth(&picture.clean);
         let pixel = |shown: Option<downpour_render::rain::DropTruth>| {
             let Some(shown) = shown else { return PixelDrop::default() };
@@ -84,7 +85,7 @@ impl TruthOf {
         };
         Ok(Truth {
             drops: shown.into_iter().map(pixel).collect(),
-            surfaces: SceneView { data: &stage.data, frame: &frame }.truth(&stage.motion),
+            surfaces: SceneView { data: &frame_scene.data, frame: &frame }.truth(&frame_scene.motion),
         })
     }
 }

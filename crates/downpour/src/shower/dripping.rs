@@ -64,28 +64,28 @@ impl Dripping {
     }
 
     /// Finds the drips of a scene.
-    pub(super) fn find(&self, stage: &FrameScene) -> Result<(), ShowerError> {
-        self.drips(stage)?;
+    pub(super) fn find(&self, frame_scene: &FrameScene) -> Result<(), ShowerError> {
+        self.drips(frame_scene)?;
         Ok(())
     }
 
     /// The drips that a picture shows at a time in seconds.
     pub(super) fn visible(
         &self,
-        stage: &FrameScene,
+        frame_scene: &FrameScene,
         view: &View,
         least_pixels: f64,
         time_s: f64,
     ) -> Result<Vec<FallingDrop>, ShowerError> {
         let view = View { max_drops: view.max_drops.min(MAX_LISTED), ..*view };
-        let obstacles = super::obstacles(stage);
-        Ok(self.drips(stage)?.visible(&obstacles, &view, least_pixels, time_s)?)
+        let obstacles = super::obstacles(frame_scene);
+        Ok(self.drips(frame_scene)?.visible(&obstacles, &view, least_pixels, time_s)?)
     }
 
-    /// The drips near the eye of a stage, in the scene that was seen first.
-    fn drips(&self, stage: &FrameScene) -> Result<Arc<Drips>, ShowerError> {
+    /// The drips near the eye of a frame, in the scene that was seen first.
+    fn drips(&self, frame_scene: &FrameScene) -> Result<Arc<Drips>, ShowerError> {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        let eye = stage.origin + stage.viewpoint.eye.as_dvec3();
+        let eye = frame_scene.origin + frame_scene.viewpoint.eye.as_dvec3();
         let (data, origin) = match &*known {
             Some(known) => {
                 if known.region == region(&known.data, known.origin, eye) {
@@ -93,7 +93,7 @@ impl Dripping {
                 }
                 (known.data.clone(), known.origin)
             }
-            None => (stage.data.clone(), stage.origin),
+            None => (frame_scene.data.clone(), frame_scene.origin),
         };
         let obstacles =
             Obstacles { nodes: &data.nodes, triangles: &data.triangles, holes: Some(&data), origin };

@@ -22,7 +22,7 @@ pub trait Scenery {
     ///
     /// # Errors
     /// As [`FrameScene::new`].
-    fn stage(&self, time_s: f64) -> Result<Cow<'_, FrameScene>, FrameSceneError>;
+    fn frame_scene(&self, time_s: f64) -> Result<Cow<'_, FrameScene>, FrameSceneError>;
 }
 
 /// A scene that stands still.
@@ -38,7 +38,7 @@ impl Scenery for Still<'_> {
         Ok(self.0.view()?)
     }
 
-    fn stage(&self, _: f64) -> Result<Cow<'_, FrameScene>, FrameSceneError> {
+    fn frame_scene(&self, _: f64) -> Result<Cow<'_, FrameScene>, FrameSceneError> {
         Ok(Cow::Borrowed(self.0))
     }
 }
@@ -61,7 +61,7 @@ impl Scenery for MovingScenery<'_> {
         FrameScene::view_at(self.weather, self.loaded, time_s)
     }
 
-    fn stage(&self, time_s: f64) -> Result<Cow<'_, FrameScene>, FrameSceneError> {
+    fn frame_scene(&self, time_s: f64) -> Result<Cow<'_, FrameScene>, FrameSceneError> {
         Ok(Cow::Owned(FrameScene::new(self.weather, self.loaded, time_s)?))
     }
 }
@@ -70,7 +70,7 @@ impl Scenery for MovingScenery<'_> {
 #[derive(Clone, Copy, Debug)]
 pub struct MovingEye<'a> {
     /// The scene, seen at any time.
-    pub stage: &'a FrameScene,
+    pub frame_scene: &'a FrameScene,
     /// Its weather.
     pub weather: &'a Weather,
     /// Its files.
@@ -83,10 +83,10 @@ impl Scenery for MovingEye<'_> {
     }
 
     fn view(&self, time_s: f64) -> Result<View, FrameSceneError> {
-        self.stage.seen_view_at(self.weather, self.loaded, time_s)
+        self.frame_scene.seen_view_at(self.weather, self.loaded, time_s)
     }
 
-    fn stage(&self, time_s: f64) -> Result<Cow<'_, FrameScene>, FrameSceneError> {
-        Ok(Cow::Owned(self.stage.seen_at(self.weather, self.loaded, time_s)?))
+    fn frame_scene(&self, time_s: f64) -> Result<Cow<'_, FrameScene>, FrameSceneError> {
+        Ok(Cow::Owned(self.frame_scene.seen_at(self.weather, self.loaded, time_s)?))
     }
 }

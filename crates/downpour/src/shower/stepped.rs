@@ -147,12 +147,12 @@ impl Stepped {
     pub(super) fn at(
         &mut self,
         scenery: &dyn Scenery,
-        stage: &FrameScene,
+        frame_scene: &FrameScene,
         time_s: f64,
         passed: &mut dyn FnMut(u32, u32),
     ) -> Result<VisibleDrops, ShowerError> {
         self.begin(scenery)?;
-        let view = self.viewed(stage.view()?);
+        let view = self.viewed(frame_scene.view()?);
         let open_s = time_s - 0.5 * view.shutter_s;
         // Times that are meant to be whole steps are, in spite of rounding.
         let step = (open_s * STEPS_PER_S + 1.0e-6).floor() as i64;
@@ -197,9 +197,9 @@ impl Stepped {
         } else {
             // Where things are in this picture; the next step is not told of it.
             let wind = self.weather.wind.air().velocity(time_s).as_vec3();
-            let made = self.map(stage, false, &[view], wind, None)?;
+            let made = self.map(frame_scene, false, &[view], wind, None)?;
             let map = made.as_ref().and_then(|(_, map)| map.as_ref());
-            let map = map.filter(|_| stage.origin == running.step_scenery.origin);
+            let map = map.filter(|_| frame_scene.origin == running.step_scenery.origin);
             running.simulation.visible_after(after_s, &view, map.or(running.step_scenery.map.as_ref()))
         };
         self.running = Some(running);
@@ -291,7 +291,7 @@ impl Stepped {
         time_s: f64,
         before: Option<StepScenery>,
     ) -> Result<StepScenery, ShowerError> {
-        let stage = scenery.stage(time_s)?;
+        let frame_scene = scenery.frame_scene(time_s)?;
         let wind = self.weather.wind.air().velocity(time_s).as_vec3();
         let uniform = self.weather.wind.uniform().is_some();
         let lasts_s = STEPS_PER_WIND as f64 / STEPS_PER_S;
@@ -301,19 +301,26 @@ impl Stepped {
             let at = |share: f64| self.view(scenery, time_s + share * lasts_s);
             vec![at(0.0)?, at(0.5)?, at(1.0)?]
         };
-        let before =
-            before.unwrap_or(StepScenery { made_of: None, map: None, wind: None, origin: stage.origin });
-        let made = self.map(&stage, scenery.is_still(), &views, wind, before.made_of)?;
+        let before = before.unwrap_or(StepScenery {
+            made_of: None,
+            map: None,
+            wind: None,
+            origin: frame_scene.origin,
+        });
+        let made = self.map(&frame_scene, scenery.is_still(), &views, wind, before.made_of)?;
         // A field knows the map that it was made with.
         let same_map = matches!(made, Some((_, None))) || (made.is_none() && before.made_of.is_none());
-        let known = before.wind.filter(|_| same_map && before.origin == stage.origin);
+        let known = before.wind.filter(|_| same_map && before.origin == frame_scene.origin);
         let (made_of, map) = match made {
             Some((made_of, map)) => (Some(made_of), map.or(before.map)),
             None => (None, None),
         };
-        let wind =
-            if uniform { None } else { Some(self.blown(&stage, &views[0], time_s, map.as_ref(), known)?) };
-        Ok(StepScenery { made_of, map, wind, origin: stage.origin })
+        let wind = if uniform {
+            None
+        } else {
+            Some(self.blown(&frame_scene, &views[0], time_s, map.as_ref(), known)?)
+        };
+        Ok(StepScenery { made_of, map, wind, origin: frame_scene.origin })
     }
 
     /// The map of what stops drops in some views, and what it is made of (of a scene that stands still the options alone say
@@ -321,27 +328,31 @@ impl Stepped {
     #[expect(clippy::type_complexity, reason = "a map and its making")]
     fn map(
         &self,
-        stage: &FrameScene,
+        frame_scene: &FrameScene,
         still: bool,
         views: &[View],
         wind: Vec3,
         known: Option<(u64, CollisionOptions)>,
     ) -> Result<Option<((u64, CollisionOptions), Option<CollisionMap>)>, ShowerError> {
-        let Some(options) = self.region(stage, views, wind)? else { return Ok(None) };
-        let scene = if still { 0 } else { digest(&stage.data.nodes, &stage.data.triangles) };
+        let Some(options) = self.region(frame_scene, views, wind)? else { return Ok(None) };
+        let scene = if still { 0 } else { digest(&frame_scene.data.nodes, &frame_scene.data.triangles) };
         let made_of = (scene, options);
         if known == Some(made_of) {
             return Ok(Some((made_of, None)));
         }
-        let map =
-            CollisionMap::from_arrays(&options, &stage.data.nodes, &stage.data.triangles, Some(&stage.data))?;
+        let map = CollisionMap::from_arrays(
+            &options,
+            &frame_scene.data.nodes,
+            &frame_scene.data.triangles,
+            Some(&frame_scene.data),
+        )?;
         Ok(Some((made_of, Some(map))))
     }
 
     /// The wind at a time in the cells round the eye; what is `known` where it is the same.
     fn blown(
         &self,
-        stage: &FrameScene,
+        frame_scene: &FrameScene,
         view: &View,
         time_s: f64,
         map: Option<&CollisionMap>,
@@ -355,26 +366,27 @@ impl Stepped {
         {
             return Ok(known);
         }
-        let origin = stage.origin.as_vec3();
+        let origin = frame_scene.origin.as_vec3();
         let mask = match map {
             Some(map) => WindMask::from_fn(&grid, |at| map.inside(at - origin)),
             None => WindMask::open(&grid),
         };
-        let field = WindField::with_turbulence(&grid, &parts, &modes, &mask)?.relative_to(stage.origin);
+        let field = WindField::with_turbulence(&grid, &parts, &modes, &mask)?.relative_to(frame_scene.origin);
         Ok(Blown { parts, modes, grid, field })
     }
 
     /// Part of the scene that the map has to cover; `None` without obstacles.
     fn region(
         &self,
-        stage: &FrameScene,
+        frame_scene: &FrameScene,
         views: &[View],
         wind: Vec3,
     ) -> Result<Option<CollisionOptions>, ShowerError> {
-        let (Some(root), false) = (stage.data.nodes.first(), stage.data.triangles.is_empty()) else {
+        let (Some(root), false) = (frame_scene.data.nodes.first(), frame_scene.data.triangles.is_empty())
+        else {
             return Ok(None);
         };
-        let each = views.iter().map(|view| self.reached(stage, view));
+        let each = views.iter().map(|view| self.reached(frame_scene, view));
         let (low, high) = each
             .reduce(|(low, high), (a, b)| (low.min(a), high.max(b)))
             .unwrap_or((DVec3::ZERO, DVec3::ZERO));
@@ -391,15 +403,15 @@ impl Stepped {
         Ok(Some(options))
     }
 
-    /// A box, relative to the stage's origin, that holds the drops of a view.
-    fn reached(&self, stage: &FrameScene, view: &View) -> (DVec3, DVec3) {
-        let eye = view.eye - stage.origin;
+    /// A box, relative to the scene's origin, that holds the drops of a view.
+    fn reached(&self, frame_scene: &FrameScene, view: &View) -> (DVec3, DVec3) {
+        let eye = view.eye - frame_scene.origin;
         match self.options.volume {
             SimVolume::Box { size_m } | SimVolume::Tariq { size_m } => {
                 (eye - DVec3::from(size_m), eye + DVec3::from(size_m))
             }
             SimVolume::Cylinder { base_m, radius_m, height_m } => {
-                let base = DVec3::from(base_m) - stage.origin;
+                let base = DVec3::from(base_m) - frame_scene.origin;
                 let across = DVec3::new(radius_m, 0.0, radius_m);
                 (base - across, base + across + DVec3::Y * height_m)
             }
