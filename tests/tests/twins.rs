@@ -93,7 +93,7 @@ fn every_shader_function_has_a_twin_of_its_name() {
 
 /// Functions of twins that have no WGSL function of their name, and why.
 const HOST_ONLY: [(&[&str], &str); 9] = [
-    (&["bvh_bounds_within"], "the walk for the CPU's callers, with an option in place of a distance below 0"),
+    (&["bvh_bounds_within"], "a question of the CPU alone: what of a mesh lies in a box"),
     (
         &[
             "packing_pack_half",
