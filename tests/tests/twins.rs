@@ -11,7 +11,7 @@ use downpour_tests::signature::all_functions;
 use downpour_tests::sources::rust_files;
 
 /// WGSL functions whose work a Rust function of another name does, and where. Kernel-level cases compare the results.
-const ELSEWHERE: [(&[&str], &str); 12] = [
+const ELSEWHERE: [(&[&str], &str); 11] = [
     (
         &[
             "puddle_is_finite",
