@@ -9,6 +9,7 @@ use std::time::Duration;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use downpour_bvh::{Bvh, bvh_blocker, bvh_hit};
 use downpour_gpu::{AdapterChoice, ComputeKernel, Gpu, wgpu, workgroups_for};
+use downpour_math::ops;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_scene::budget::Budget;
 use downpour_scene::gltf::read_triangles;
@@ -82,7 +83,7 @@ fn rays(bvh: &Bvh, eye: Vec3, target: Vec3, part: u32) -> [Vec<Ray>; 3] {
         let normal = Vec3::from(triangle.edge_1).cross(triangle.edge_2.into()).normalize_or_zero();
         let normal = if normal.dot(along) > 0.0 { -normal } else { normal };
         let [u, v, ..] = rng_draw([1, 2], k, 0, 0).map(rng_unit);
-        let (sin, cos) = (std::f32::consts::TAU * v).sin_cos();
+        let (sin, cos) = (ops::sin(std::f32::consts::TAU * v), ops::cos(std::f32::consts::TAU * v));
         let z = 1.0 - 2.0 * u;
         let drawn = normal + Vec3::new(cos, sin, 0.0) * (1.0 - z * z).sqrt() + Vec3::Z * z;
         let origin = Vec3::from(ray.origin) + along * hit.distance + normal * 1.0e-3;
