@@ -12,8 +12,8 @@ use std::time::{Duration, Instant};
 pub struct Verdict {
     /// The mutant's number in the population.
     pub mutant: usize,
-    /// The worker's word: `seen CASE`, `refused`, `survived`; or `seen by a hang`, `seen by a crash`; or `failed ...` if a
-    /// case fails without any mutant.
+    /// The worker's word: `seen CASE`, `refused`, `survived`; `unjudged: ...` if none sees it and a case fails without any mutant; or
+    /// `seen by a hang`, `seen by a crash`; or `failed ...` if a case hangs without any mutant.
     pub word: String,
     /// From the question to the answer.
     pub took: Duration,

@@ -42,6 +42,8 @@ pub enum Outcome {
     Refused,
     /// Every case that reaches the function passes.
     Survived,
+    /// None sees it, but this one fails without any mutant, as where there is not enough memory.
+    Unjudged(&'static str),
 }
 
 /// The cases, and what of them stays the same from mutant to mutant.
@@ -127,11 +129,16 @@ impl Bench {
         };
         let name = mutants[first].swap.function.clone();
         let mut left: Vec<(u32, usize)> = (1..).zip(valid).collect();
+        let mut failing = None;
         for step in self.steps(&name) {
             if left.is_empty() {
                 break;
             }
             if !self.is_ready(step, &mut |time| allow(time, None)) {
+                // With few calls it may be by chance; all of them come later.
+                if self.is_whole(step) {
+                    failing = Some(self.name(step));
+                }
                 continue;
             }
             self.relay.swap(Some(swap.clone()));
@@ -145,7 +152,7 @@ impl Bench {
             });
             self.relay.swap(None);
         }
-        left.into_iter().for_each(|(_, k)| tell(k, Outcome::Survived));
+        left.into_iter().for_each(|(_, k)| tell(k, failing.map_or(Outcome::Survived, Outcome::Unjudged)));
     }
 
     /// The cases that reach a function, in the order in which they are tried.
@@ -157,6 +164,14 @@ impl Bench {
         let few = functions.iter().take(MAX_FUNCTION_CASES).map(|&at| Step::Function(at, FEW_CALLS));
         let all = own.map(|at| Step::Function(at, self.functions[at].case.calls));
         few.chain(all).chain(self.kernels_for(name).into_iter().map(Step::Kernel)).collect()
+    }
+
+    /// True if the step is all of its case.
+    fn is_whole(&self, step: Step) -> bool {
+        match step {
+            Step::Function(at, calls) => calls >= self.functions[at].case.calls,
+            Step::Kernel(_) => true,
+        }
     }
 
     fn name(&self, step: Step) -> &'static str {
@@ -244,8 +259,8 @@ fn quietly(run: impl FnOnce() -> Result<Run, GpuError>) -> Option<Run> {
 }
 
 /// Tries mutants until the input ends. A line of it has the numbers of mutants of one function. Lines of the output:
-/// `allow SECONDS`, with a mutant's number if the step is its own; then, for each, `NUMBER seen CASE`, `NUMBER refused` or
-/// `NUMBER survived`.
+/// `allow SECONDS`, with a mutant's number if the step is its own; then, for each, `NUMBER seen CASE`, `NUMBER refused`,
+/// `NUMBER survived` or `NUMBER unjudged: ...`.
 pub fn work(gpu: &Gpu) {
     crate::kept::keep();
     // Twins of many small loops wait for their helpers at each: this thread is one of them.
@@ -268,6 +283,9 @@ pub fn work(gpu: &Gpu) {
                 Outcome::Seen(case) => say(&format!("{} seen {case}", numbers[k])),
                 Outcome::Refused => say(&format!("{} refused", numbers[k])),
                 Outcome::Survived => say(&format!("{} survived", numbers[k])),
+                Outcome::Unjudged(case) => {
+                    say(&format!("{} unjudged: {case} fails as it is", numbers[k]));
+                }
             },
         );
     }
