@@ -11,6 +11,7 @@ use glam::Vec3A;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::leaf_collapser::collapse;
+use obvhs::bvh2::node::Bvh2Node;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
@@ -143,7 +144,7 @@ impl Layout {
         while let Some((from, at, depth)) = stack.pop() {
             let node = &tree.nodes[from];
             if node.is_leaf() {
-                self.leaf(at, triangles(tree, from).into_iter());
+                self.leaf(at, of_leaf(tree, node).iter().copied());
             } else if depth >= HALVED_FROM && depth + heights[from] > DEEPEST {
                 self.halve(&mut triangles(tree, from), boxes, at);
             } else {
@@ -172,17 +173,22 @@ impl Layout {
     }
 }
 
+/// Triangles of a leaf of a tree.
+fn of_leaf<'a>(tree: &'a Bvh2, leaf: &Bvh2Node) -> &'a [u32] {
+    let first = leaf.first_index as usize;
+    &tree.primitive_indices[first..first + leaf.prim_count as usize]
+}
+
 /// Triangles below a node of a tree, from left to right.
 fn triangles(tree: &Bvh2, node: usize) -> Vec<u32> {
     let mut all = Vec::new();
     let mut stack = vec![node];
     while let Some(at) = stack.pop() {
         let node = &tree.nodes[at];
-        let first = node.first_index as usize;
         if node.is_leaf() {
-            all.extend_from_slice(&tree.primitive_indices[first..first + node.prim_count as usize]);
+            all.extend_from_slice(of_leaf(tree, node));
         } else {
-            stack.extend([first + 1, first]);
+            stack.extend([node.first_index as usize + 1, node.first_index as usize]);
         }
     }
     all
