@@ -22,7 +22,7 @@ mod step;
 mod wet;
 mod wind;
 
-use crate::{FunctionCase, KernelCase};
+use crate::{FunctionCase, KernelCase, mean_errors};
 
 /// All function-level cases.
 #[must_use]
@@ -80,6 +80,7 @@ pub fn kernels() -> Vec<KernelCase> {
     ]
     .into_iter()
     .flatten()
+    .map(mean_errors::bounded)
     .collect()
 }
 

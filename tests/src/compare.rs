@@ -30,6 +30,8 @@ pub struct Comparison {
     pub worst_rel: f64,
     /// Largest distance of numbers in units in the last place.
     pub worst_ulp: u32,
+    /// Mean of the errors, each as a fraction of what is allowed and at most 1.
+    pub mean: f64,
     /// Index of the word with the largest absolute difference, or of the first that is wrong in kind.
     pub worst_at: usize,
     /// Description of what is wrong, if anything.
@@ -47,7 +49,7 @@ pub fn compare(cpu: &Cpu, gpu: &Gpu, kinds: &[WordKind], tol: &Tol) -> Compariso
         out.failure = Some(format!("{} words from the CPU, {} from the GPU", cpu.0.len(), gpu.0.len()));
         return out;
     }
-    let mut first_wrong = None;
+    let (mut first_wrong, mut used) = (None, 0.0);
     for (at, (&c, &g)) in cpu.0.iter().zip(&gpu.0).enumerate() {
         let wrong = if g == POISON && c != POISON {
             Some("the GPU did not write it".to_owned())
@@ -69,12 +71,16 @@ pub fn compare(cpu: &Cpu, gpu: &Gpu, kinds: &[WordKind], tol: &Tol) -> Compariso
                 out.worst_rel = out.worst_rel.max(relative);
                 out.worst_ulp = out.worst_ulp.max(ulp);
                 let within = difference <= tol.abs || relative <= tol.rel || ulp <= tol.ulp;
+                if within {
+                    used += tol.used(difference, relative, ulp);
+                }
                 (!within).then(|| {
                     format!("CPU {a:e}, GPU {b:e}: {difference:e} apart, {relative:e} relative, {ulp} ulp")
                 })
             }
         };
         if let Some(text) = wrong {
+            used += 1.0;
             out.outside += 1;
             first_wrong.get_or_insert((at, text));
         }
@@ -84,6 +90,13 @@ pub fn compare(cpu: &Cpu, gpu: &Gpu, kinds: &[WordKind], tol: &Tol) -> Compariso
         out.failure = Some(format!(
             "{} of {} words are outside {tol:?}; first at word {at}: {text}",
             out.outside, out.compared
+        ));
+    }
+    out.mean = used / out.compared as f64;
+    if out.failure.is_none() && out.mean > tol.mean {
+        out.failure = Some(format!(
+            "the errors are {:.2e} of what {tol:?} allows in the mean; {:.2e} at most",
+            out.mean, tol.mean
         ));
     }
     out
@@ -142,6 +155,10 @@ mod tests {
         assert!(!fails(&cpu, &gpu, FLOAT, few), "one of ten is allowed");
         gpu[4] = 1.0f32.to_bits();
         assert!(fails(&cpu, &gpu, FLOAT, few), "two of ten are not");
+        let mean = |mean: f64| Tol { mean, ..Tol::absolute(2.0, "test") };
+        let (cpu, gpu) = (of(&[0.0; 10]), of(&[0.1; 10]));
+        assert!(!fails(&cpu, &gpu, FLOAT, mean(0.06)), "a twentieth of what is allowed");
+        assert!(fails(&cpu, &gpu, FLOAT, mean(0.04)), "each is close enough, all of them are not");
     }
 
     #[test]

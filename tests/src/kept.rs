@@ -2,6 +2,8 @@
 
 use std::any::Any;
 use std::collections::HashMap;
+use std::fmt::{Debug, Write as _};
+use std::hash::{DefaultHasher, Hasher as _};
 use std::sync::{Arc, Mutex, PoisonError};
 
 type Values = HashMap<String, Arc<dyn Any + Send + Sync>>;
@@ -33,5 +35,23 @@ pub fn kept<T: Send + Sync + 'static>(key: &str, make: impl FnOnce() -> T) -> Ar
             }
             made
         }
+    }
+}
+
+/// A number of all that a value prints as, for keys: equal values have the same.
+#[must_use]
+pub fn digest(value: &impl Debug) -> u64 {
+    let mut text = Text(DefaultHasher::new());
+    // Hashing does not fail.
+    let _ = write!(text, "{value:?}");
+    text.0.finish()
+}
+
+struct Text(DefaultHasher);
+
+impl std::fmt::Write for Text {
+    fn write_str(&mut self, text: &str) -> std::fmt::Result {
+        self.0.write(text.as_bytes());
+        Ok(())
     }
 }

@@ -18,6 +18,7 @@ pub mod domain;
 pub mod function;
 pub mod kept;
 pub mod kernel;
+pub mod mean_errors;
 pub mod mutants;
 pub mod reach;
 pub mod relay;

@@ -26,9 +26,10 @@ impl Report {
     pub fn note(&self, case: &str, comparison: &Comparison, tol: &Tol) {
         let c = comparison;
         let line = format!(
-            "{case},{},{},{:e},{:e},{},{:e},{:e},{},{},\"{}\"",
+            "\"{case}\",{},{},{:e},{:e},{:e},{},{:e},{:e},{},{},\"{}\"",
             c.compared,
             c.outside,
+            c.mean,
             c.worst_abs,
             c.worst_rel,
             c.worst_ulp,
@@ -54,8 +55,7 @@ impl Report {
         let folder = folder();
         std::fs::create_dir_all(&folder)?;
         let path = folder.join(format!("{}.csv", slug(adapter)));
-        let head =
-            "case,words,outside,worst_abs,worst_rel,worst_ulp,tol_abs,tol_rel,tol_ulp,tol_outliers,why\n";
+        let head = "case,words,outside,mean,worst_abs,worst_rel,worst_ulp,tol_abs,tol_rel,tol_ulp,tol_outliers,why\n";
         std::fs::write(&path, format!("{head}{}\n", lines.join("\n")))?;
         Ok(Some(path))
     }

@@ -14,6 +14,9 @@ pub struct Tol {
     pub ulp: u32,
     /// Fraction of all numbers that may be outside (0 for almost every case).
     pub outliers: f64,
+    /// Largest mean of the errors, each as a fraction of what is allowed and at most 1: where single numbers may be far apart,
+    /// most of them still have to be close. 1: no limit.
+    pub mean: f64,
     /// Source of the numbers: the WGSL accuracy table, a condition number, a measured bound.
     pub why: &'static str,
 }
@@ -22,25 +25,25 @@ impl Tol {
     /// Bit for bit.
     #[must_use]
     pub const fn exact(why: &'static str) -> Self {
-        Self { abs: 0.0, rel: 0.0, ulp: 0, outliers: 0.0, why }
+        Self { abs: 0.0, rel: 0.0, ulp: 0, outliers: 0.0, mean: 1.0, why }
     }
 
     /// So many units in the last place.
     #[must_use]
     pub const fn ulp(ulp: u32, why: &'static str) -> Self {
-        Self { abs: 0.0, rel: 0.0, ulp, outliers: 0.0, why }
+        Self { abs: 0.0, rel: 0.0, ulp, outliers: 0.0, mean: 1.0, why }
     }
 
     /// Relative, with an absolute floor.
     #[must_use]
     pub const fn relative(rel: f64, abs: f64, why: &'static str) -> Self {
-        Self { abs, rel, ulp: 0, outliers: 0.0, why }
+        Self { abs, rel, ulp: 0, outliers: 0.0, mean: 1.0, why }
     }
 
     /// Absolute.
     #[must_use]
     pub const fn absolute(abs: f64, why: &'static str) -> Self {
-        Self { abs, rel: 0.0, ulp: 0, outliers: 0.0, why }
+        Self { abs, rel: 0.0, ulp: 0, outliers: 0.0, mean: 1.0, why }
     }
 
     /// The same with a fraction of numbers that may be outside.
@@ -48,5 +51,14 @@ impl Tol {
     pub const fn with_outliers(mut self, fraction: f64) -> Self {
         self.outliers = fraction;
         self
+    }
+
+    /// Error of a number as a fraction of what is allowed, from its differences; 1 where it is outside.
+    #[must_use]
+    pub fn used(&self, difference: f64, relative: f64, ulp: u32) -> f64 {
+        let part = |error: f64, allowed: f64| if error <= 0.0 { 0.0 } else { error / allowed };
+        let parts =
+            [part(difference, self.abs), part(relative, self.rel), part(f64::from(ulp), f64::from(self.ulp))];
+        parts.into_iter().fold(1.0, f64::min)
     }
 }

@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 
 use downpour_shaders::{kernels, modules};
-use downpour_tests::cases;
 use downpour_tests::kernel::OWN_ENTRY;
 use downpour_tests::signature::all_functions;
+use downpour_tests::{cases, mean_errors};
 
 /// Functions that function-level cases name, and those that the kernels of kernel-level cases call according to naga.
 fn covered() -> BTreeSet<String> {
@@ -81,4 +81,15 @@ fn every_tolerance_has_a_reason() {
         assert!(case.tol.why.len() > 10, "{}", case.function);
         assert!(case.calls >= 256, "{}", case.function);
     }
+}
+
+#[test]
+fn every_kernel_case_has_a_mean_error() {
+    let measured = mean_errors::measured();
+    let missing: Vec<_> =
+        cases::kernels().iter().map(|case| case.name).filter(|name| !measured.contains_key(name)).collect();
+    assert!(
+        missing.is_empty(),
+        "not measured (run the parity test, then `cargo xtask mean-errors`): {missing:?}"
+    );
 }

@@ -23,7 +23,8 @@ cargo xtask scenes skies      capture the street into the sky maps of assets/ski
 cargo xtask atlas [OPTIONS]   write assets/streaks; --check compares them; --columbia imports the streak database
 cargo xtask goldens [--bless] compare the golden masks and pictures of tests/goldens; with --bless write them from the CPU
 cargo xtask mutants [OPTIONS] change one thing in every WGSL function and list what no case sees (--sample N --seed S, --function
-                              NAME, --own, --list, --jobs N, --report FILE, --strict)
+                              NAME, --own, --others, --list, --cases, --jobs N, --report FILE, --strict)
+cargo xtask mean-errors       add to tests/mean_errors.txt what the parity reports of target/parity say
 cargo xtask shaders [FOLDER]  write the complete WGSL text of every kernel (default target/shaders)
 cargo xtask truth [OPTIONS]   hold `downpour specimen` against Mitsuba 3 (needs python3 and the network)
 cargo xtask figures [NAME]    make a paper's figures again, with our rain beside theirs; without a name list them
@@ -46,6 +47,7 @@ fn main() -> ExitCode {
         ["goldens"] => goldens::compare(),
         ["goldens", "--bless"] => goldens::bless(),
         ["mutants", rest @ ..] => mutants::try_all(rest),
+        ["mean-errors"] => mutants::mean_errors(),
         ["shaders"] => shaders::write("target/shaders"),
         ["shaders", folder] => shaders::write(folder),
         ["truth" | "figures", ..] => validate(&words),

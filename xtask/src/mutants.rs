@@ -1,4 +1,4 @@
-//! Mutants of the shaders: the program `mutants` of `downpour-tests`.
+//! Programs of `downpour-tests`: mutants of the shaders, and the limits of mean errors.
 
 use crate::{driver, run};
 
@@ -8,7 +8,12 @@ const SAMPLE: [&str; 8] = ["--own", "--sample", "40", "--seed", "1", "--least", 
 /// Tries those that the arguments ask for.
 pub(crate) fn try_all(arguments: &[&str]) -> Result<(), String> {
     driver::ensure()?;
-    program(arguments)
+    program("mutants", arguments)
+}
+
+/// Writes `tests/mean_errors.txt`.
+pub(crate) fn mean_errors() -> Result<(), String> {
+    program("mean_errors", &[])
 }
 
 /// Tries the sample; fails if more than a twentieth survive that are not listed.
@@ -24,12 +29,11 @@ pub(crate) fn try_sample() -> Result<(), String> {
         }
         _ => {}
     }
-    program(&[&SAMPLE[..], &[&report.display().to_string()]].concat())
+    program("mutants", &[&SAMPLE[..], &[&report.display().to_string()]].concat())
 }
 
-fn program(arguments: &[&str]) -> Result<(), String> {
+fn program(name: &str, arguments: &[&str]) -> Result<(), String> {
     let runtime = crate::driver::runtime()?;
-    let cargo =
-        ["run", "--quiet", "--locked", "-p", "downpour-tests", "--all-features", "--bin", "mutants", "--"];
+    let cargo = ["run", "--quiet", "--locked", "-p", "downpour-tests", "--all-features", "--bin", name, "--"];
     run::cargo(&[&cargo[..], arguments].concat(), &[("XDG_RUNTIME_DIR", &runtime)])
 }

@@ -6,19 +6,22 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
 
+use downpour_tests::mutants::bundle;
 use downpour_tests::mutants::known::{Known, known, reason};
 use downpour_tests::mutants::pool::{self, Verdict};
 use downpour_tests::mutants::population::{Mutant, population, sample};
-use downpour_tests::mutants::{bundle, worker};
+use downpour_tests::mutants::worker::{self, Bench};
 use downpour_tests::{adapter, cases};
 
 const USAGE: &str = "\
 cargo xtask mutants [OPTIONS]
   --function NAME   mutants of one function
   --own             functions that have a case of their own only; these take milliseconds each
+  --others          functions that have none: cases of kernels, and of what calls them, reach these
   --sample N        so many, drawn by the seed
   --seed S          of the sample (default 1)
   --list            say which, and try none
+  --cases           say which cases reach their functions, in the order in which they are tried, and try none
   --jobs N          processes (default: one per core)
   --report FILE     a line per mutant; those that are in it already are left out (default target/mutants.tsv)
   --least PERCENT   fail if fewer are seen, or named in tests/mutants.txt
@@ -28,9 +31,11 @@ cargo xtask mutants [OPTIONS]
 struct Options {
     function: Option<String>,
     own: bool,
+    others: bool,
     sample: Option<usize>,
     seed: u32,
     list: bool,
+    cases: bool,
     jobs: usize,
     report: Option<PathBuf>,
     least: usize,
@@ -47,9 +52,11 @@ impl Options {
             match name.as_str() {
                 "--function" => options.function = Some(value()?),
                 "--own" => options.own = true,
+                "--others" => options.others = true,
                 "--sample" => options.sample = Some(number(value()?)?),
                 "--seed" => options.seed = number(value()?)? as u32,
                 "--list" => options.list = true,
+                "--cases" => options.cases = true,
                 "--jobs" => options.jobs = number(value()?)?,
                 "--report" => options.report = Some(value()?.into()),
                 "--least" => options.least = number(value()?)?,
@@ -68,7 +75,9 @@ impl Options {
         let own: BTreeSet<&str> = cases::functions().iter().map(|case| case.function).collect();
         let fits = |mutant: &Mutant| {
             let name = mutant.swap.function.as_str();
-            self.function.as_deref().is_none_or(|wanted| wanted == name) && (!self.own || own.contains(name))
+            let its_own = own.contains(name);
+            self.function.as_deref().is_none_or(|wanted| wanted == name)
+                && !(self.own && !its_own || self.others && its_own)
         };
         let mut chosen: Vec<usize> = (0..all.len()).filter(|&at| fits(&all[at])).collect();
         if let Some(count) = self.sample {
@@ -100,6 +109,12 @@ fn run(arguments: &[String]) -> Result<(), String> {
     let chosen = options.chosen(&all);
     if options.list {
         chosen.iter().for_each(|&at| println!("{}", all[at].describe()));
+        return Ok(());
+    }
+    if options.cases {
+        let functions: BTreeSet<&str> = chosen.iter().map(|&at| all[at].swap.function.as_str()).collect();
+        let bench = Bench::new(&adapter::open().map_err(|error| adapter::missing(&error))?);
+        functions.into_iter().for_each(|name| println!("{name}: {}", bench.cases(name).join("; ")));
         return Ok(());
     }
     let report = options.report.unwrap_or_else(|| PathBuf::from("target/mutants.tsv"));

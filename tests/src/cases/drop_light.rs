@@ -26,6 +26,7 @@ use super::scene::scene;
 use crate::Domain::{Fixed, Made, OneOf, Uniform, Unit3};
 use crate::compare::{Cpu, Gpu as FromGpu};
 use crate::function::Run;
+use crate::kept::{digest, kept};
 use crate::signature::WordKind;
 use crate::words::{Args, IntoWords};
 use crate::{FunctionCase, KernelCase, Tol};
@@ -157,16 +158,23 @@ fn drops() -> Vec<[f32; 4]> {
 /// More lamps than a dispatch takes, of all kinds.
 fn many() -> SceneData {
     let mut builder = SceneBuilder::new();
-    for k in 0..150 {
+    lamps(150).into_iter().for_each(|lamp| builder.add_light(lamp));
+    builder.build(&SkyLight::new(64, 32, &vec![[0.5; 3]; 64 * 32]))
+}
+
+/// Lamps of all kinds: with a size, with an end, with cones up to more than half of all directions.
+pub(super) fn lamps(count: u32) -> Vec<LightSource> {
+    let lamp = |k: u32| {
         let [a, b, c, d] = rng_draw([8, 2], k, 0, 0).map(rng_unit);
         let position = Vec3::new(12.0 * a - 6.0, 1.0 + 3.0 * b, 12.0 * c - 6.0);
         let intensity = Vec3::new(1.0 + d, 2.0 - d, 0.5 + a) * 4.0;
         let direction = Vec3::new(b - 0.5, -1.0, d - 0.5).normalize();
-        builder.add_light(match k % 4 {
+        let radius = if k % 3 == 0 { 0.3 * c } else { 0.0 };
+        match k % 4 {
             0 => LightSource::Directional { direction, irradiance: intensity * 0.01 },
-            1 => LightSource::Point { radius: 0.0, position, intensity, range: 8.0 * c },
-            _ => LightSource::Spot {
-                radius: 0.0,
+            1 => LightSource::Point { radius, position, intensity, range: 8.0 * c },
+            2 => LightSource::Spot {
+                radius,
                 position,
                 direction,
                 intensity,
@@ -174,9 +182,21 @@ fn many() -> SceneData {
                 inner: 0.4 * c,
                 outer: 0.6,
             },
-        });
-    }
-    builder.build(&SkyLight::new(64, 32, &vec![[0.5; 3]; 64 * 32]))
+            _ => {
+                let (inner, outer) = (0.3 + 1.2 * c, 0.7 + 1.3 * c);
+                LightSource::Spot {
+                    radius,
+                    position,
+                    direction,
+                    intensity,
+                    range: 2.0 + 5.0 * a,
+                    inner,
+                    outer,
+                }
+            }
+        }
+    };
+    (0..count).map(lamp).collect()
 }
 
 /// The project's streak atlas.
@@ -193,12 +213,18 @@ fn atlas_case(gpu: &Gpu, scene: &SceneData, pick: StreakPick) -> Result<Run, Gpu
         Vec3::new(a - 0.5, 0.4 + b, c - 0.5).normalize().extend(k as f32).to_array()
     });
     let rows: Vec<[f32; 4]> = drops().into_iter().chain(axes).collect();
-    rows_case(gpu, scene, &table, DropLightOptions::ATLAS, &rows)
+    rows_case(gpu, scene, &table, DropLightOptions::ATLAS, &rows, false)
 }
 
 fn light_case(gpu: &Gpu, scene: &SceneData, form: DropLightForm, glints: u32) -> Result<Run, GpuError> {
     let table = DropLightTable::water().expect("water");
-    rows_case(gpu, scene, &table, DropLightOptions { form, glints }, &drops())
+    rows_case(gpu, scene, &table, DropLightOptions { form, glints }, &drops(), false)
+}
+
+/// The lamps of drops as the profiles of streaks want them.
+fn streaks_case(gpu: &Gpu, scene: &SceneData, form: DropLightForm) -> Result<Run, GpuError> {
+    let table = DropLightTable::water().expect("water");
+    rows_case(gpu, scene, &table, DropLightOptions { form, glints: 0 }, &drops(), true)
 }
 
 fn rows_case(
@@ -207,18 +233,21 @@ fn rows_case(
     table: &DropLightTable,
     options: DropLightOptions,
     drops: &[[f32; 4]],
+    of_streaks: bool,
 ) -> Result<Run, GpuError> {
     let view = Viewpoint { eye: Vec3::new(0.6, 1.4, 5.0), forward: Vec3::NEG_Z, up: Vec3::Y, fov_y: 0.9 };
     let frame = RenderFrame::new(scene, &view, [64, 64], 1, 0, 7).expect("a frame");
     let lighting = SceneView { data: scene, frame: &frame };
-    let lights = DropLights::new(&lighting, view.eye, table, options).expect("lights");
-    let cpu = lights.light(drops);
+    let lit = if of_streaks { DropLights::of_streaks } else { DropLights::new };
+    let lights = lit(&lighting, view.eye, table, options).expect("lights");
+    let key = format!("drop light {options:?} {} {}", lights.stride(), digest(&(scene, drops, table)));
+    let cpu = kept(&key, || lights.light(drops));
     let (scenes, pipeline) = (ScenePipeline::new(gpu)?, DropLightPipeline::new(gpu)?);
     let lighting = scenes.upload(scene)?.lighting(gpu, &frame)?;
     let pass = pipeline.prepare(gpu, &lighting, &pipeline.upload(table)?, &lights, drops)?;
     gpu.submit(&pass.dispatches())?;
-    // Positions and images are compared as such, streaks of an atlas as they are.
-    let glints = if options.form == DropLightForm::Atlas { 0 } else { options.glints };
+    // Positions and images of glints are compared as such, other rows as they are.
+    let glints = if options.form == DropLightForm::Traced { options.glints } else { 0 };
     let words = |rows: &[[f32; 4]]| -> Vec<u32> {
         let of_drop = |rows: &[[f32; 4]]| {
             if glints == 0 {
@@ -277,6 +306,15 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         }),
         case("main_drop_light: Rousseau 2006, internal reflection", |gpu| {
             light_case(gpu, &scene(), DropLightForm::Rousseau2006Internal, 0)
+        }),
+        case("main_drop_light: Rousseau 2006, two of many lamps", |gpu| {
+            light_case(gpu, &many(), DropLightForm::Rousseau2006, 4)
+        }),
+        case("main_drop_light: lamps of streaks, traced", |gpu| {
+            streaks_case(gpu, &many(), DropLightForm::Traced)
+        }),
+        case("main_drop_light: lamps of streaks, Rousseau 2006", |gpu| {
+            streaks_case(gpu, &many(), DropLightForm::Rousseau2006Internal)
         }),
         case("main_drop_light: Im & Sung 2022", |gpu| light_case(gpu, &many(), DropLightForm::ImSung2022, 0)),
     ]

@@ -37,8 +37,8 @@ use downpour_trace::scene::SceneView;
 use downpour_weather::Fog;
 use glam::{DVec3, Vec3, Vec4};
 
-use super::drop_light::atlas;
-use super::scene::scene;
+use super::drop_light::{atlas, lamps};
+use super::scene::{lit_scene, scene};
 use crate::Domain::{Made, Uniform};
 use crate::compare::{Cpu, Gpu as FromGpu, POISON};
 use crate::function::Run;
@@ -101,10 +101,17 @@ fn run(width: u32, cpu: &[[f32; 4]], gpu: &[[f32; 4]]) -> Run {
     }
 }
 
-/// Unresolved rain of 500 mm/h, thick within some tens of meters: all drops outside a box around the eye, small ones everywhere.
+/// Unresolved rain of 500 mm/h, thick within some tens of meters: all drops outside a region around the eye or beside it, small ones
+/// everywhere.
 fn medium(masks: &DropMasks, eye: Vec3) -> RainMedium {
     let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 500.0).expect("a rain");
-    let region = Region::Box { center: eye.as_dvec3() + DVec3::new(0.5, 0.2, -1.0), size: DVec3::splat(7.0) };
+    let region = if eye == INSIDE[0] {
+        Region::Sphere { center: eye.as_dvec3() + DVec3::new(0.3, 0.0, -0.5), radius: 2.5 }
+    } else if eye == BESIDE[0] {
+        Region::Cylinder { base: DVec3::new(-0.5, -0.4, -0.3), radius: 1.5, height: 1.7 }
+    } else {
+        Region::Box { center: eye.as_dvec3() + DVec3::new(0.5, 0.2, -1.0), size: DVec3::splat(7.0) }
+    };
     let resolved = Resolved {
         near: 0.05,
         far: 50.0,
@@ -113,13 +120,19 @@ fn medium(masks: &DropMasks, eye: Vec3) -> RainMedium {
         min_diameter: 0.4e-3,
         region,
     };
-    let pane = Some(PanePlane { outward: Vec3::new(0.0, 0.28, -0.96), distance: 0.7 });
+    let pane = (eye == LEVEL[0] || eye == ABOVE[0])
+        .then_some(PanePlane { outward: Vec3::new(0.0, 0.28, -0.96), distance: 0.7 });
     let velocity = Vec3::new(1.0, -4.0, 0.5);
     let options = MediumOptions { velocity, pane, ..MediumOptions::default() };
     let made = RainMedium::new(&rain, &resolved, masks, &options).expect("a medium");
     let fog = Fog { extinction_per_m: 0.05, height_m: Some(2.0), base_m: 0.0, asymmetry: 0.8, albedo: 0.9 };
-    // One of the two placements has fog.
-    made.with_fog((eye == ABOVE[0]).then_some(&fog), 0.0)
+    // Every other placement has fog.
+    made.with_fog((eye == ABOVE[0] || eye == INSIDE[0]).then_some(&fog), 0.0)
+}
+
+/// What stands before an eye.
+fn scene_at(eye: Vec3) -> SceneData {
+    if eye == INSIDE[0] || eye == BESIDE[0] { lit_scene(&lamps(24)) } else { scene() }
 }
 
 /// Part of a picture that is compared.
@@ -197,7 +210,7 @@ struct Prepared {
 
 impl Prepared {
     fn new([eye, forward]: [Vec3; 2], options: RainOptions, masks: &DropMasks) -> Self {
-        let scene = scene();
+        let scene = scene_at(eye);
         let view = Viewpoint { eye, forward, up: Vec3::Y, fov_y: 0.9 };
         let frame = RenderFrame::new(&scene, &view, SIZE, 1, 1, 7).expect("a frame");
         let medium = medium(masks, eye);
@@ -207,7 +220,7 @@ impl Prepared {
             shown.extend(splashes(eye, forward));
         }
         let rain = Rain::new(&frame.camera, DVec3::from(eye), &shown, masks, &options);
-        assert!(rain.list.len() > 100, "{} drops", rain.list.len());
+        assert!(rain.list.len() > 50, "{} drops", rain.list.len());
         let clean = SceneView { data: &scene, frame: &frame }.picture();
         let capture = trace_environment(&scene, &frame, &rain.environment);
         Self { scene, frame, rain, capture, clean }
@@ -378,6 +391,8 @@ const PROFILED: Tol = Tol::relative(
 
 /// Positions of the eye, and the directions in which it looks.
 const LEVEL: [Vec3; 2] = [Vec3::new(0.6, 0.4, 3.0), Vec3::new(-0.1, 0.0, -1.0)];
+const INSIDE: [Vec3; 2] = [Vec3::new(-1.4, 0.9, 2.6), Vec3::new(0.5, -0.25, -1.0)];
+const BESIDE: [Vec3; 2] = [Vec3::new(2.4, 1.5, 2.4), Vec3::new(-1.0, -0.4, -1.0)];
 const ABOVE: [Vec3; 2] = [Vec3::new(0.1, 3.0, 0.4), Vec3::new(0.05, -1.0, -0.1)];
 
 /// A number of cells, from 1 to 24.
@@ -612,6 +627,26 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         medium("main_medium_light: from above", &MEDIUM_LIGHT_KERNEL, |gpu| {
             rain_case(gpu, ABOVE, RefractionForm::Direction, Exposure::default(), Part::Medium)
         }),
+        medium("main_medium_open: within a sphere", &MEDIUM_OPEN_KERNEL, |gpu| {
+            rain_case(gpu, INSIDE, RefractionForm::Direction, Exposure::default(), Part::Open)
+        }),
+        medium("main_medium_light: within a sphere, many lamps in fog", &MEDIUM_LIGHT_KERNEL, |gpu| {
+            rain_case(gpu, INSIDE, RefractionForm::Direction, Exposure::default(), Part::Medium)
+        }),
+        medium("main_medium_light: beside a cylinder, many lamps", &MEDIUM_LIGHT_KERNEL, |gpu| {
+            rain_case(gpu, BESIDE, RefractionForm::Direction, Exposure::default(), Part::Medium)
+        }),
+        medium("main_medium_light: the spots of Im and Sung", &MEDIUM_LIGHT_KERNEL, |gpu| {
+            let light = DropLightOptions { form: DropLightForm::ImSung2022, glints: 0 };
+            let options = RainOptions { light, ..RainOptions::default() };
+            masks_case(gpu, BESIDE, options, &DropMasks::trace(1.333).expect("masks"), Part::Medium)
+        }),
+        KernelCase {
+            tol: Tol::relative(1.0e-4, 1.0e-6, "two sums of 49 numbers, and a division (2.5 ulp)"),
+            ..medium("main_medium_filter: many lamps in fog", &MEDIUM_FILTER_KERNEL, |gpu| {
+                rain_case(gpu, INSIDE, RefractionForm::Direction, Exposure::default(), Part::Filter)
+            })
+        },
         KernelCase {
             tol: SEEN,
             ..medium("main_medium_light: shadows", &MEDIUM_LIGHT_KERNEL, |gpu| {

@@ -33,6 +33,7 @@ use glam::{Affine3A, Vec3};
 use crate::Domain::{AnyWord, Below, Fixed, Made, OneOf, Uniform, Unit3};
 use crate::compare::{Cpu, Gpu as FromGpu};
 use crate::function::Run;
+use crate::kept::{digest, kept};
 use crate::signature::WordKind;
 use crate::words::{Args, IntoWords as _};
 use crate::{FunctionCase, KernelCase, Tol};
@@ -260,11 +261,16 @@ pub(super) fn functions() -> Vec<FunctionCase> {
 
 /// A floor, boxes of every kind of material, a masked and a see-through sheet, three kinds of lamps, a sky.
 pub(super) fn scene() -> SceneData {
-    scene_that(false)
+    scene_that(false, &[])
+}
+
+/// The same with more lamps.
+pub(super) fn lit_scene(lamps: &[LightSource]) -> SceneData {
+    scene_that(false, lamps)
 }
 
 /// The same; if it `shines`, with a board whose colors shine, the glass of a lamp, and lamps with a size.
-fn scene_that(shines: bool) -> SceneData {
+fn scene_that(shines: bool, lamps: &[LightSource]) -> SceneData {
     let sky: Vec<[f32; 3]> = (0..64 * 32)
         .map(|i| {
             let (x, y) = ((i % 64) as f32 / 64.0, (i / 64) as f32 / 32.0);
@@ -378,6 +384,9 @@ fn scene_that(shines: bool) -> SceneData {
         inner: 0.3,
         outer: 0.6,
     });
+    for lamp in lamps {
+        builder.add_light(*lamp);
+    }
     let mut data = builder.build(&sky);
     if shines {
         data.set_light_radius(0, 0.03);
@@ -393,7 +402,8 @@ fn scene_case(gpu: &Gpu, eye: Vec3, sky_rays: u32) -> Result<Run, GpuError> {
 pub(super) fn picture(gpu: &Gpu, scene: &SceneData, eye: Vec3, sky_rays: u32) -> Result<Run, GpuError> {
     let view = Viewpoint { eye, forward: -eye, up: Vec3::Y, fov_y: 0.9 };
     let frame = RenderFrame::new(scene, &view, [96, 64], 2, sky_rays, 7).expect("a frame");
-    let cpu = SceneView { data: scene, frame: &frame }.picture();
+    let key = format!("picture {eye} {sky_rays} {}", digest(scene));
+    let cpu = kept(&key, || SceneView { data: scene, frame: &frame }.picture());
     let pipeline = ScenePipeline::new(gpu)?;
     let gpu = pipeline.picture(&pipeline.upload(scene)?, &frame)?;
     let words = |picture: &[[f32; 4]]| picture.iter().flatten().map(|v| v.to_bits()).collect();
@@ -451,11 +461,11 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             scene_case(gpu, Vec3::new(-9.0, 6.0, 12.0), 0)
         }),
         case("main_trace: surfaces that shine, and lamps with a size", SHINING, |gpu| {
-            picture(gpu, &scene_that(true), Vec3::new(0.6, 1.4, 3.0), 2)
+            picture(gpu, &scene_that(true, &[]), Vec3::new(0.6, 1.4, 3.0), 2)
         }),
         case("main_trace: the sun over surfaces that shine", SHINING, |gpu| {
             // The sun stands behind the middle.
-            picture(gpu, &scene_that(true), Vec3::new(1.6, -3.2, -1.8), 1)
+            picture(gpu, &scene_that(true, &[]), Vec3::new(1.6, -3.2, -1.8), 1)
         }),
     ]
 }

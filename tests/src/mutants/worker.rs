@@ -78,7 +78,7 @@ struct KernelBench {
 
 /// Largest numbers of kernel-level cases that a mutant is shown to, where its function has a case of its own and where
 /// it has none. The first of each kernel come first.
-const MAX_KERNEL_CASES: [usize; 2] = [2, 8];
+const MAX_KERNEL_CASES: [usize; 2] = [2, 99];
 
 /// Largest number of function-level cases that a mutant is shown to, its own first.
 const MAX_FUNCTION_CASES: usize = 12;
@@ -164,6 +164,12 @@ impl Bench {
         let few = functions.iter().take(MAX_FUNCTION_CASES).map(|&at| Step::Function(at, FEW_CALLS));
         let all = own.map(|at| Step::Function(at, self.functions[at].case.calls));
         few.chain(all).chain(self.kernels_for(name).into_iter().map(Step::Kernel)).collect()
+    }
+
+    /// The names of the cases that reach a function, in the order in which they are tried.
+    #[must_use]
+    pub fn cases(&self, function: &str) -> Vec<&'static str> {
+        self.steps(function).into_iter().map(|step| self.name(step)).collect()
     }
 
     /// True if the step is all of its case.

@@ -219,7 +219,7 @@ impl<'a> DropLights<'a> {
     ///
     /// # Errors
     /// As [`DropLights::new`].
-    pub(crate) fn of_streaks(
+    pub fn of_streaks(
         lighting: &'a dyn Lighting,
         eye: Vec3,
         table: &'a DropLightTable,

@@ -19,6 +19,7 @@ use downpour_specimen::{Image, Sky, SpecimenLamp, SpecimenOptions, render_specim
 use crate::Domain::{AnyWord, Made, OneOf, Or, Uniform, Unit3};
 use crate::compare::{Cpu, Gpu as FromGpu};
 use crate::function::Run;
+use crate::kept::kept;
 use crate::signature::WordKind;
 use crate::words::{Args, IntoWords};
 use crate::{FunctionCase, KernelCase, Tol};
@@ -295,13 +296,19 @@ pub(super) fn picture(gpu: &Gpu, diameter: f64, options: &SpecimenOptions) -> Re
     lit_picture(gpu, diameter, options, &[])
 }
 
-/// Two lamps of a few degrees, one of them behind the drop as seen from yaw 0.
+/// As many lamps as there may be, of a few degrees and of colors of their own, the first behind the drop as seen from yaw 0.
 pub(super) fn lamps() -> Vec<SpecimenLamp> {
-    [(2.8, 0.1, 0.1, [4.0, 3.0, 2.0]), (1.6, -0.2, 0.15, [0.5, 1.0, 2.5])]
+    let two = [(2.8, 0.1, 0.1, [4.0, 3.0, 2.0]), (1.6, -0.2, 0.15, [0.5, 1.0, 2.5])];
+    let around = (2..specimen::SPECIMEN_LAMPS).map(|k| {
+        let k = f64::from(k);
+        (0.8 * k, 0.7 - 0.2 * k, 0.12 + 0.01 * k, [0.5 + 0.3 * k, 3.0 - 0.3 * k, 1.0 + 0.1 * k * k])
+    });
+    two.into_iter()
+        .chain(around)
         .map(|(yaw, pitch, radius, radiance)| {
-            SpecimenLamp::new(yaw, pitch, radius, radiance).expect("a lamp")
+            SpecimenLamp::new(yaw, pitch, radius, radiance.map(|x| x as f32)).expect("a lamp")
         })
-        .to_vec()
+        .collect()
 }
 
 pub(super) fn lit_picture(
@@ -313,7 +320,8 @@ pub(super) fn lit_picture(
     let shape = DropShape::new(diameter).expect("a diameter of the table");
     let texels = sky_texels();
     let sky = Sky::new(64, 32, &texels).expect("a sky").with_lamps(lamps).expect("few lamps");
-    let cpu = render_specimen(&shape, options, sky).expect("a picture");
+    let key = format!("specimen {diameter} {options:?} {lamps:?}");
+    let cpu = kept(&key, || render_specimen(&shape, options, sky).expect("a picture"));
     let gpu = SpecimenRenderer::new(gpu)?.render(&shape, options, sky).map_err(told)?;
     let words = |image: &Image| image.pixels.iter().flat_map(IntoWords::words).collect();
     let cell = |i: u32| [i % cpu.width, i / cpu.width].map(|c| (c as f32).to_bits()).to_vec();
