@@ -35,7 +35,7 @@ use downpour_trace::data::{RenderFrame, SceneData};
 use downpour_trace::gpu::ScenePipeline;
 use downpour_trace::scene::SceneView;
 use downpour_weather::Fog;
-use glam::{DVec3, Vec3, Vec4};
+use glam::{DVec3, Vec2, Vec3, Vec4};
 
 use super::drop_light::{atlas, lamps};
 use super::scene::{lit_scene, scene};
@@ -84,6 +84,20 @@ fn drops(eye: Vec3, forward: Vec3) -> Vec<FallingDrop> {
             }
         })
         .collect()
+}
+
+/// Every other drop moved to what stands behind it in the picture, or half into it.
+fn onto(clean: &[[f32; 4]], frame: &RenderFrame, eye: Vec3, drops: &mut [FallingDrop]) {
+    for (k, drop) in (0u8..).zip(drops.iter_mut().step_by(2)) {
+        let direction = (drop.position.as_vec3() - eye).normalize();
+        let at = frame.camera.camera_project(direction).max(Vec2::ZERO).as_uvec2();
+        let pixel = at.y.min(SIZE[1] - 1) * SIZE[0] + at.x.min(SIZE[0] - 1);
+        let distance = clean[pixel as usize][3];
+        if distance < 50.0 {
+            let out = drop.diameter * (0.3 * f32::from(k % 7) - 0.9);
+            drop.position = (eye + direction * (distance - out)).as_dvec3();
+        }
+    }
 }
 
 fn words(texels: &[[f32; 4]]) -> Vec<u32> {
@@ -215,13 +229,15 @@ impl Prepared {
         let frame = RenderFrame::new(&scene, &view, SIZE, 1, 1, 7).expect("a frame");
         let medium = medium(masks, eye);
         let options = RainOptions { capture_size: 64, capture_grid: 2, medium, ..options };
+        let clean = SceneView { data: &scene, frame: &frame }.picture();
         let mut shown = drops(eye, forward);
         if masks.has_splashes() {
-            shown.extend(splashes(eye, forward));
+            let mut crowns = splashes(eye, forward);
+            onto(&clean, &frame, eye, &mut crowns);
+            shown.extend(crowns);
         }
         let rain = Rain::new(&frame.camera, DVec3::from(eye), &shown, masks, &options);
         assert!(rain.list.len() > 50, "{} drops", rain.list.len());
-        let clean = SceneView { data: &scene, frame: &frame }.picture();
         let capture = trace_environment(&scene, &frame, &rain.environment);
         Self { scene, frame, rain, capture, clean }
     }

@@ -398,18 +398,21 @@ fn scene_case(gpu: &Gpu, eye: Vec3, sky_rays: u32) -> Result<Run, GpuError> {
     picture(gpu, &scene(), eye, sky_rays)
 }
 
+/// Of pictures of a scene: no multiple of a workgroup.
+const SIZE: [u32; 2] = [93, 62];
+
 /// A picture of a scene, from an eye that looks at its middle.
 pub(super) fn picture(gpu: &Gpu, scene: &SceneData, eye: Vec3, sky_rays: u32) -> Result<Run, GpuError> {
     let view = Viewpoint { eye, forward: -eye, up: Vec3::Y, fov_y: 0.9 };
-    let frame = RenderFrame::new(scene, &view, [96, 64], 2, sky_rays, 7).expect("a frame");
+    let frame = RenderFrame::new(scene, &view, SIZE, 2, sky_rays, 7).expect("a frame");
     let key = format!("picture {eye} {sky_rays} {}", digest(scene));
     let cpu = kept(&key, || SceneView { data: scene, frame: &frame }.picture());
     let pipeline = ScenePipeline::new(gpu)?;
     let gpu = pipeline.picture(&pipeline.upload(scene)?, &frame)?;
     let words = |picture: &[[f32; 4]]| picture.iter().flatten().map(|v| v.to_bits()).collect();
     Ok(Run {
-        arguments: (0..96u32 * 64)
-            .map(|i| vec![((i % 96) as f32).to_bits(), ((i / 96) as f32).to_bits()])
+        arguments: (0..SIZE[0] * SIZE[1])
+            .map(|i| [i % SIZE[0], i / SIZE[0]].map(|c| (c as f32).to_bits()).to_vec())
             .collect(),
         cpu: Cpu(words(&cpu)),
         gpu: FromGpu(words(&gpu)),
