@@ -22,7 +22,7 @@
 //!
 //! A rate that changes leaves out drops of the heaviest rain, each for all of its fall (`thinning`).
 //!
-//! Limit: drops of one chain share their size, H apart; H is about 8 m per millimetre of diameter, up to 64 m.
+//! Limit: drops of one chain share their size, H apart; H is about 8 m per millimeter of diameter, up to 64 m.
 
 #[doc(hidden)]
 pub mod chain;
@@ -78,13 +78,13 @@ pub(crate) struct Class {
     pub(crate) largest: f64,
     /// Terminal speeds of the smallest and the largest drop, m/s.
     pub(crate) speeds: [f64; 2],
-    /// Drops per cubic metre.
+    /// Drops per cubic meter.
     pub(crate) density: f64,
     pub(crate) sizes: ChainSizes,
     pub(crate) count: ChainCount,
-    /// Edge of a column, metres.
+    /// Edge of a column, meters.
     pub(crate) edge: f64,
-    /// Period along the vertical, metres.
+    /// Period along the vertical, meters.
     pub(crate) period: f64,
 }
 
@@ -111,9 +111,9 @@ struct Chain {
     phase: u32,
     diameter: f32,
     speed: f64,
-    /// Current height of the drop k = 0, metres.
+    /// Current height of the drop k = 0, meters.
     height: f64,
-    /// Displacement by the wind, metres, and velocity due to it.
+    /// Displacement by the wind, meters, and velocity due to it.
     carried: DVec3,
     wind: DVec3,
 }
@@ -200,7 +200,7 @@ impl RainField {
         Self { wind, ..self }
     }
 
-    /// Number of drops per cubic metre; of a rate that changes, no less than at any time.
+    /// Number of drops per cubic meter; of a rate that changes, no less than at any time.
     #[must_use]
     pub fn number_density(&self) -> f64 {
         self.classes.iter().map(|class| class.density).sum()

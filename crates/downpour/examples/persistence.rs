@@ -37,7 +37,7 @@ const SHUTTER: f64 = 1.0 / 60.0;
 /// Samples that count as the truth.
 const TRUTH: u32 = 512;
 
-/// Metres: where drops are in the papers' picture, and where all streaks are wide.
+/// Meters: where drops are in the papers' picture, and where all streaks are wide.
 const FAR: [f32; 2] = [0.1, 10.0];
 const NEAR: [f32; 2] = [0.2, 1.0];
 

@@ -4,7 +4,7 @@
 //! ```sh
 //! cargo run --release -p downpour --example puddle_from_impacts -- 25
 //! ```
-//! 25 mm/h in a box of air 3 m wide over a floor with a square metre of water 5 mm deep, for 3 s.
+//! 25 mm/h in a box of air 3 m wide over a floor with a square meter of water 5 mm deep, for 3 s.
 
 use std::error::Error;
 

@@ -23,7 +23,7 @@ use downpour::trace::gpu::ScenePipeline;
 use downpour::trace::scene::SceneView;
 use downpour::weather::{Roots, Weather, load};
 
-/// Metres.
+/// Meters.
 const FARTHEST: f32 = 10.0;
 
 fn main() -> Result<(), Box<dyn Error>> {

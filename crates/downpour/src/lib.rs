@@ -50,12 +50,12 @@
 //! let speed = terminal_speed(FallSpeedModel::Beard1976, 2.0e-3, &Air::standard())?;
 //! let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 10.0)?;
 //! println!("a drop of 2 mm falls at {speed:.2} m/s");
-//! println!("10 mm/h are {:.0} drops per cubic metre", rain.number_density());
+//! println!("10 mm/h are {:.0} drops per cubic meter", rain.number_density());
 //! # assert!((speed - 6.506).abs() < 0.001);
 //! # Ok::<(), downpour::drop::DropError>(())
 //! ```
 //!
-//! Units are SI (metres, seconds, kilograms, radians); a name says so where it is something else (`rate_mm_h`,
+//! Units are SI (meters, seconds, kilograms, radians); a name says so where it is something else (`rate_mm_h`,
 //! `temperature_c`). Axes are those of glTF: right-handed, +Y up.
 
 pub mod output_file;

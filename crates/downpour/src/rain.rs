@@ -34,7 +34,7 @@ pub use error::RainError;
 pub use settings::RainSettings;
 pub use textures::{HostSky, PlateTextures};
 
-/// View of a frame: a perspective camera in the host's world (right-handed, +Y up, metres), and its exposure.
+/// View of a frame: a perspective camera in the host's world (right-handed, +Y up, meters), and its exposure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RainView {
     /// The camera. The projection is symmetrical, and its pixels are square.

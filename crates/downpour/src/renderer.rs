@@ -206,7 +206,7 @@ impl Renderer {
 
     /// The scene at the first time.
     #[must_use]
-    pub fn first_stage(&self) -> &FrameScene {
+    pub fn first_scene(&self) -> &FrameScene {
         &self.first
     }
 

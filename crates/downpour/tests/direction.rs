@@ -110,7 +110,7 @@ fn a_rate_that_changes_is_that_of_the_time_in_any_order() {
     // As a disdrometer as high as the columns of a class, up to 30 m above and below the eye: there the rate is that of some seconds
     // before and after.
     let shower = Shower::new(clip.weather()).unwrap();
-    let rates = times.map(|time| shower.measured_rate_mm_h(clip.first_stage(), time).unwrap());
+    let rates = times.map(|time| shower.measured_rate_mm_h(clip.first_scene(), time).unwrap());
     assert!(rates[0] < 20.0 && (rates[1] / 80.0 - 1.0).abs() < 0.1 && rates[2] == 0.0, "{rates:?}");
     let exposure = clip.exposure();
     for (time, frame) in times.into_iter().zip(&frames) {

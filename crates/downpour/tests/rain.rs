@@ -19,7 +19,7 @@ fn device() -> Option<Gpu> {
     device::gpu(LimitSet::WebGpuDefault)
 }
 
-/// A frame of a host: a gray sky above, a wall some metres away below.
+/// A frame of a host: a gray sky above, a wall some meters away below.
 struct Host {
     gpu: Gpu,
     color: wgpu::Texture,

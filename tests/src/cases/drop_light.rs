@@ -169,7 +169,7 @@ pub(super) fn lamps(count: u32) -> Vec<LightSource> {
         let position = Vec3::new(12.0 * a - 6.0, 1.0 + 3.0 * b, 12.0 * c - 6.0);
         let intensity = Vec3::new(1.0 + d, 2.0 - d, 0.5 + a) * 4.0;
         let direction = Vec3::new(b - 0.5, -1.0, d - 0.5).normalize();
-        let radius = if k % 3 == 0 { 0.3 * c } else { 0.0 };
+        let radius = if k.is_multiple_of(3) { 0.3 * c } else { 0.0 };
         match k % 4 {
             0 => LightSource::Directional { direction, irradiance: intensity * 0.01 },
             1 => LightSource::Point { radius, position, intensity, range: 8.0 * c },

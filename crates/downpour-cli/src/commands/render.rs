@@ -173,7 +173,7 @@ impl RenderArguments {
         let renderer =
             doing("setting the scene", self.quiet, || Renderer::new(weather, loaded, options, device))?;
         self.say_fallback(&renderer);
-        say_missing(renderer.weather(), renderer.loaded(), renderer.first_stage(), |text| self.say(text));
+        say_missing(renderer.weather(), renderer.loaded(), renderer.first_scene(), |text| self.say(text));
         Ok(renderer)
     }
 

@@ -35,11 +35,11 @@ pub struct GlassPictureFrame {
     pub rows: u32,
     /// Out of the pane, away from the eye.
     pub outward: [f32; 3],
-    /// Bins in a metre.
+    /// Bins in a meter.
     pub bins: f32,
     /// From the eye to the pane's upper left corner, m.
     pub corner: [f32; 3],
-    /// Cells of the lattice in a metre.
+    /// Cells of the lattice in a meter.
     pub cells: f32,
     /// Width and height of the pane, m.
     pub size: [f32; 2],

@@ -244,7 +244,7 @@ mod tests {
         let (begins, rates) = rows(&keys);
         assert_eq!((begins.len(), rates.len()), (1 + 64 + 64 + 1, 1 + 1 + 64 + 64 + 1));
         assert_eq!(rates[..2], [4.0; 2]);
-        // A tenth of a second has a tenth of a millimetre per hour.
+        // A tenth of a second has a tenth of a millimeter per hour.
         assert!((rates[2] - 4.05).abs() < 1.0e-12 && (rates[3] - 4.15).abs() < 1.0e-12);
         assert_eq!(begins[3], FieldTime::new(0.2));
         assert_eq!(rates.last(), Some(&0.0));

@@ -89,7 +89,7 @@ impl Machine {
             let pixels: Vec<[u8; 3]> = frame.pixels.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
             (frame.size, pixels, frame.drops_drawn, frame.passes)
         };
-        let frame_scene = Arc::new(renderer.first_stage().clone());
+        let frame_scene = Arc::new(renderer.first_scene().clone());
         Ok(Drawn {
             number,
             revision: request.revision,

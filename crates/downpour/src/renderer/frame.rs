@@ -128,7 +128,7 @@ impl Frame {
         Ok(write_exr(width, height, &self.radiance())?)
     }
 
-    /// The bytes of an OpenEXR of all layers: R, G, B; clean.R, .G, .B; rain.R, .G, .B; transmittance.Y; depth.Z (metres along
+    /// The bytes of an OpenEXR of all layers: R, G, B; clean.R, .G, .B; rain.R, .G, .B; transmittance.Y; depth.Z (meters along
     /// the ray, 1e30 for the sky); with glow also glow.R, .G, .B, so that `R = clean.R * transmittance.Y + rain.R + glow.R` but for panes. With [`Frame::truth`] also of the drop that a pixel shows most of `drop.id_low` and
     /// `drop.id_high` (the halves of its id), `drop.diameter_mm` (0: none), `drop.distance_m` and `drop.alpha`; and of the surface behind
     /// it `wetness.Y`, `water.depth_mm`, `motion.X` and `motion.Y` (pixels per second, to the right and down).

@@ -390,7 +390,7 @@ impl Stepped {
         let (low, high) = each
             .reduce(|(low, high), (a, b)| (low.min(a), high.max(b)))
             .unwrap_or((DVec3::ZERO, DVec3::ZERO));
-        // A metre more: drops that are on their way into the picture are above it.
+        // A meter more: drops that are on their way into the picture are above it.
         let low = (low.as_vec3() - 1.0).max(Vec3::from(root.low)) - 0.1;
         let high = (high.as_vec3() + 1.0).min(Vec3::from(root.high)) + 0.1;
         if low.cmpge(high).any() {

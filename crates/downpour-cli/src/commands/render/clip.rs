@@ -59,7 +59,7 @@ pub(super) fn run(
     let first_s = time_s(arguments.input.time, frames.first, fps);
     let mut renderer = arguments.renderer(input, first_s, paths.stats.is_some())?;
     let atlas = renderer.options().atlas.as_ref().map(atlas_digest);
-    let scene = scene_digest(renderer.weather(), renderer.loaded(), renderer.first_stage());
+    let scene = scene_digest(renderer.weather(), renderer.loaded(), renderer.first_scene());
     let weather = renderer.weather().clone();
     let refraction = format!("{:?}", renderer.refraction());
     let clip = Clip { arguments, frames, fps, paths, weather, atlas, refraction, scene, interrupt };
