@@ -313,6 +313,25 @@ fn steps(gpu: &Gpu, options: &PuddleOptions, dt_s: f32, count: u32) -> Result<Ru
     Ok(run_of(options.size[0], &cpu, &[heights, slow(velocities)]))
 }
 
+/// A step of water with cells so high that their neighbors overflow, which are reset and counted.
+fn spoiled(gpu: &Gpu, options: &PuddleOptions) -> Result<Run, GpuError> {
+    let (mut cpu, mut on_gpu) = pair(gpu, options)?;
+    let (mut heights, velocities) = (cpu.heights(), cpu.velocities());
+    let [nx, ny] = options.size;
+    for k in 0..7 {
+        heights[(nx * (ny * (2 * k + 1) / 14) + nx * (k + 1) / 8) as usize] = 3.0e38;
+    }
+    cpu.set_state(&heights, &velocities).expect("as many as cells");
+    on_gpu.set_state(&heights, &velocities).map_err(told)?;
+    let parts = cpu.step(0.002).expect("a step");
+    assert_eq!(on_gpu.step(0.002).map_err(told)?, parts);
+    let [on_cpu, there] = [cpu.reset_cells(), on_gpu.reset_cells().map_err(told)?];
+    assert!(on_cpu > 10, "{on_cpu} cells");
+    let counted = |heights: Vec<f32>, count: u64| [heights, vec![count as f32; 1]].concat();
+    let [made, _] = on_gpu.state().map_err(told)?;
+    Ok(run_of(nx, &[counted(cpu.heights(), on_cpu)], &[counted(made, there)]))
+}
+
 fn seeds(gpu: &Gpu) -> Result<Run, GpuError> {
     let options = PuddleOptions { size: [150, 131], ..PuddleOptions::default() };
     let (mut cpu, mut on_gpu) = pair(gpu, &options)?;
@@ -346,6 +365,8 @@ const STEPS: Tol = Tol::absolute(
     6.0e-9,
     "heights of 1e-3 m and velocities of 0.1 m/s over 100, some dozens of passes: each rounds to 1e-7 of them, and a GPU may fuse products",
 );
+
+const OVERFLOWS: Tol = Tol::relative(1.0e-5, 6.0e-9, "as the steps above; some heights are of 1e38 m");
 
 /// The cases.
 pub(super) fn kernels() -> Vec<KernelCase> {
@@ -408,6 +429,20 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             run: |gpu| {
                 let options = PuddleOptions { size: [97, 131], degree: Some(1), ..PuddleOptions::default() };
                 steps(gpu, &options, 0.03, 1)
+            },
+        },
+        step("main_puddle_step: cells that overflow", OVERFLOWS, |gpu| {
+            spoiled(gpu, &PuddleOptions { size: [97, 101], steps_per_sweep: 1, ..PuddleOptions::default() })
+        }),
+        KernelCase {
+            name: "main_lattice_puddle_step_direct: cells that overflow",
+            kernel: &DIRECT_KERNEL,
+            with: &[],
+            overrides: &[],
+            text: None,
+            tol: OVERFLOWS,
+            run: |gpu| {
+                spoiled(gpu, &PuddleOptions { size: [97, 131], degree: Some(1), ..PuddleOptions::default() })
             },
         },
         step("main_puddle_step: one step of twelve passes", STEPS, |gpu| {

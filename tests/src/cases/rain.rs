@@ -8,6 +8,7 @@ use downpour_math::ops;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_render::camera::Viewpoint;
 use downpour_render::gpu::RainPipeline;
+use downpour_render::light::LightSource;
 use downpour_render::picture::compose_pixel;
 use downpour_render::rain::light::{DropLightForm, DropLightOptions};
 use downpour_render::rain::medium::fog::medium_fog_depth;
@@ -38,7 +39,7 @@ use downpour_weather::Fog;
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
 use super::drop_light::{atlas, lamps};
-use super::scene::{lit_scene, scene};
+use super::scene::{DULL, lit_scene, scene};
 use crate::Domain::{Made, Uniform};
 use crate::compare::{Cpu, Gpu as FromGpu, POISON};
 use crate::function::Run;
@@ -146,7 +147,14 @@ fn medium(masks: &DropMasks, eye: Vec3) -> RainMedium {
 
 /// What stands before an eye.
 fn scene_at(eye: Vec3) -> SceneData {
-    if eye == INSIDE[0] || eye == BESIDE[0] { lit_scene(&lamps(24)) } else { scene() }
+    if eye == INSIDE[0] || eye == BESIDE[0] {
+        lit_scene(&lamps(24))
+    } else if eye == UNDER_SUNS[0] {
+        let is_sun = |lamp: &LightSource| matches!(lamp, LightSource::Directional { .. });
+        lit_scene(&lamps(20).into_iter().filter(is_sun).collect::<Vec<_>>())
+    } else {
+        scene()
+    }
 }
 
 /// Part of a picture that is compared.
@@ -409,6 +417,7 @@ const PROFILED: Tol = Tol::relative(
 const LEVEL: [Vec3; 2] = [Vec3::new(0.6, 0.4, 3.0), Vec3::new(-0.1, 0.0, -1.0)];
 const INSIDE: [Vec3; 2] = [Vec3::new(-1.4, 0.9, 2.6), Vec3::new(0.5, -0.25, -1.0)];
 const BESIDE: [Vec3; 2] = [Vec3::new(2.4, 1.5, 2.4), Vec3::new(-1.0, -0.4, -1.0)];
+const UNDER_SUNS: [Vec3; 2] = [Vec3::new(0.4, 2.5, 3.5), Vec3::new(-0.1, -0.4, -1.0)];
 const ABOVE: [Vec3; 2] = [Vec3::new(0.1, 3.0, 0.4), Vec3::new(0.05, -1.0, -0.1)];
 
 /// A number of cells, from 1 to 24.
@@ -611,18 +620,24 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             name: "main_trace: a capture with a sun and lamps",
             kernel: &TRACE_KERNEL,
             with: &[],
-            overrides: &[
-                ("SCENE_PANE", 0.0),
-                ("SCENE_SHINES", 0.0),
-                ("SCENE_WET", 0.0),
-                ("WET_SURFACES", 0.0),
-            ],
+            overrides: DULL,
             text: None,
             tol: CAPTURED,
             run: |gpu| {
                 let (eye, forward) = (Vec3::new(0.6, 1.4, 3.0), Vec3::new(-0.2, -0.4, -1.0));
                 let still = Exposure::default();
                 rain_case(gpu, [eye, forward], RefractionForm::Direction, still, Part::Capture)
+            },
+        },
+        KernelCase {
+            name: "main_trace: a capture with many suns",
+            kernel: &TRACE_KERNEL,
+            with: &[],
+            overrides: DULL,
+            text: None,
+            tol: CAPTURED,
+            run: |gpu| {
+                rain_case(gpu, UNDER_SUNS, RefractionForm::Direction, Exposure::default(), Part::Capture)
             },
         },
         KernelCase {

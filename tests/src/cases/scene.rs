@@ -421,7 +421,7 @@ pub(super) fn picture(gpu: &Gpu, scene: &SceneData, eye: Vec3, sky_rays: u32) ->
 }
 
 /// A dry scene of which nothing shines.
-const DULL: &[(&str, f64)] =
+pub(super) const DULL: &[(&str, f64)] =
     &[("SCENE_PANE", 0.0), ("SCENE_SHINES", 0.0), ("SCENE_WET", 0.0), ("WET_SURFACES", 0.0)];
 
 /// A dry scene of which something does.
