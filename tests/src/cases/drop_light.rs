@@ -202,7 +202,7 @@ pub(super) fn lamps(count: u32) -> Vec<LightSource> {
 /// The project's streak atlas.
 pub(super) fn atlas(pick: StreakPick) -> StreakAtlas {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/streaks");
-    StreakAtlas::load(&folder).expect("the project's atlas").with_pick(pick).with_seed(77)
+    StreakAtlas::load(&folder).expect("the project's atlas").with_pick(pick).with_seed(0x9abc_def0_1234_5678)
 }
 
 /// Lamps on drops that fall aslant, by the streaks of an atlas.

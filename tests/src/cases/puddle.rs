@@ -333,7 +333,8 @@ fn spoiled(gpu: &Gpu, options: &PuddleOptions) -> Result<Run, GpuError> {
 }
 
 fn seeds(gpu: &Gpu) -> Result<Run, GpuError> {
-    let options = PuddleOptions { size: [150, 131], ..PuddleOptions::default() };
+    // Squares of 64 cells: three across, and three down, of which one is cut.
+    let options = PuddleOptions { size: [192, 131], ..PuddleOptions::default() };
     let (mut cpu, mut on_gpu) = pair(gpu, &options)?;
     let impacts: Vec<Impact> = (0..40)
         .map(|i| {
@@ -350,7 +351,7 @@ fn seeds(gpu: &Gpu) -> Result<Run, GpuError> {
     cpu.displace(&wake).expect("a wake");
     on_gpu.seed(&impacts).map_err(told)?;
     on_gpu.displace(&wake).map_err(told)?;
-    Ok(run_of(150, &[cpu.heights()], &[on_gpu.heights().map_err(told)?]))
+    Ok(run_of(192, &[cpu.heights()], &[on_gpu.heights().map_err(told)?]))
 }
 
 fn normals(gpu: &Gpu) -> Result<Run, GpuError> {

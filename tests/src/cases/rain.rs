@@ -337,8 +337,9 @@ fn masks_case(
         Part::Filter => {
             gpu.submit(&pass.medium())?;
             let numbers = |layer: &[[f32; 4]]| -> Vec<[f32; 4]> {
-                // The last number is two halves, which the case of what was found holds.
-                layer.iter().map(|&[r, g, b, _]| [r, g, b, 0.0]).collect()
+                // The last number is two halves: the mean distance, and the depth, which the case of what was found holds.
+                let distance = |halves: f32| half::f16::from_bits(halves.to_bits() as u16).to_f32();
+                layer.iter().map(|&[r, g, b, halves]| [r, g, b, distance(halves)]).collect()
             };
             // From the same findings.
             let medium = rain.medium_light(lights).filtered(clean, &pass.medium_found()?);

@@ -269,6 +269,11 @@ pub(super) fn lit_scene(lamps: &[LightSource]) -> SceneData {
     scene_that(false, lamps)
 }
 
+/// The same with surfaces and the glass of a lamp that shine, and lamps with a size.
+pub(super) fn shining_scene() -> SceneData {
+    scene_that(true, &[])
+}
+
 /// The same; if it `shines`, with a board whose colors shine, the glass of a lamp, and lamps with a size.
 fn scene_that(shines: bool, lamps: &[LightSource]) -> SceneData {
     let sky: Vec<[f32; 3]> = (0..64 * 32)
@@ -464,11 +469,11 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             scene_case(gpu, Vec3::new(-9.0, 6.0, 12.0), 0)
         }),
         case("main_trace: surfaces that shine, and lamps with a size", SHINING, |gpu| {
-            picture(gpu, &scene_that(true, &[]), Vec3::new(0.6, 1.4, 3.0), 2)
+            picture(gpu, &shining_scene(), Vec3::new(0.6, 1.4, 3.0), 2)
         }),
         case("main_trace: the sun over surfaces that shine", SHINING, |gpu| {
             // The sun stands behind the middle.
-            picture(gpu, &scene_that(true, &[]), Vec3::new(1.6, -3.2, -1.8), 1)
+            picture(gpu, &shining_scene(), Vec3::new(1.6, -3.2, -1.8), 1)
         }),
     ]
 }

@@ -4,12 +4,13 @@ use downpour_gpu::{Gpu, GpuError};
 use downpour_shaders::render::scene::{SURFACE, TRACE_KERNEL};
 use downpour_shaders::render::wet::WET;
 use downpour_trace::SceneWetness;
+use downpour_trace::data::SceneData;
 use downpour_trace::surface::surface_porosity;
 use downpour_trace::wet::{wet_arrival, wet_corner, wet_fraction, wet_noise, wet_reflectance, wet_relief};
 use downpour_weather::WetnessAt;
 use glam::Vec3;
 
-use super::scene::{picture, scene};
+use super::scene::{picture, scene, shining_scene};
 use crate::Domain::{AnyWord, Below, Or, Uniform, Unit3};
 use crate::function::Run;
 use crate::words::{Args, IntoWords as _};
@@ -105,35 +106,49 @@ const PICTURE: Tol = Tol::relative(
 )
 .with_outliers(6.0e-3);
 
+/// Overrides of a wet scene of which something shines, or nothing.
+const fn wet(shines: f64) -> [(&'static str, f64); 4] {
+    [("SCENE_PANE", 0.0), ("SCENE_SHINES", shines), ("SCENE_WET", 0.0), ("WET_SURFACES", 1.0)]
+}
+
+const DULL: &[(&str, f64)] = &wet(0.0);
+
+const SHINING: &[(&str, f64)] = &wet(1.0);
+
 /// The cases.
 pub(super) fn kernels() -> Vec<KernelCase> {
-    let case = |name, run| KernelCase {
+    let case = |name, overrides, run| KernelCase {
         name,
         kernel: &TRACE_KERNEL,
         with: &[],
-        overrides: &[("SCENE_PANE", 0.0), ("SCENE_SHINES", 0.0), ("SCENE_WET", 0.0), ("WET_SURFACES", 1.0)],
+        overrides,
         text: None,
         tol: PICTURE,
         run,
     };
     vec![
-        case("main_trace: wet surfaces from near", case_near),
-        case("main_trace: wet surfaces under the sky alone", case_far),
+        case("main_trace: wet surfaces from near", DULL, case_near),
+        case("main_trace: wet surfaces under the sky alone", DULL, case_far),
+        case("main_trace: wet surfaces among what shines", SHINING, case_shining),
     ]
 }
 
-/// The scene of the other cases in a rain that comes aslant.
-fn case(gpu: &Gpu, eye: Vec3, sky_rays: u32, at: WetnessAt) -> Result<Run, GpuError> {
-    let mut scene = scene();
+/// A scene of the other cases in a rain that comes aslant.
+fn case(gpu: &Gpu, mut scene: SceneData, eye: Vec3, sky_rays: u32, at: WetnessAt) -> Result<Run, GpuError> {
     let towards = Vec3::new(0.35, 1.0, 0.5).normalize();
     scene.set_wetness(Some(&SceneWetness { at, towards, shift: Vec3::new(3.0, 0.0, 5.0) }));
     picture(gpu, &scene, eye, sky_rays)
 }
 
 fn case_near(gpu: &Gpu) -> Result<Run, GpuError> {
-    case(gpu, Vec3::new(0.6, 1.0, 2.6), 2, WetnessAt { before: 0.8, kept: 0.7, since: 0.3 })
+    case(gpu, scene(), Vec3::new(0.6, 1.0, 2.6), 2, WetnessAt { before: 0.8, kept: 0.7, since: 0.3 })
 }
 
 fn case_far(gpu: &Gpu) -> Result<Run, GpuError> {
-    case(gpu, Vec3::new(-3.0, 3.0, 6.0), 0, WetnessAt { before: 6.0, kept: 1.0, since: 0.0 })
+    case(gpu, scene(), Vec3::new(-3.0, 3.0, 6.0), 0, WetnessAt { before: 6.0, kept: 1.0, since: 0.0 })
+}
+
+fn case_shining(gpu: &Gpu) -> Result<Run, GpuError> {
+    let at = WetnessAt { before: 2.0, kept: 0.9, since: 0.3 };
+    case(gpu, shining_scene(), Vec3::new(1.0, 1.2, 2.8), 1, at)
 }
