@@ -87,7 +87,7 @@ fn drops(eye: Vec3, forward: Vec3) -> Vec<FallingDrop> {
         .collect()
 }
 
-/// Every other drop moved to what stands behind it in the picture, or half into it.
+/// Every other drop moved to what stands behind it in the picture, or half into it, and made as large as a few pixels.
 fn onto(clean: &[[f32; 4]], frame: &RenderFrame, eye: Vec3, drops: &mut [FallingDrop]) {
     for (k, drop) in (0u8..).zip(drops.iter_mut().step_by(2)) {
         let direction = (drop.position.as_vec3() - eye).normalize();
@@ -95,6 +95,8 @@ fn onto(clean: &[[f32; 4]], frame: &RenderFrame, eye: Vec3, drops: &mut [Falling
         let pixel = at.y.min(SIZE[1] - 1) * SIZE[0] + at.x.min(SIZE[0] - 1);
         let distance = clean[pixel as usize][3];
         if distance < 50.0 {
+            // Some pixels wide.
+            drop.diameter = 0.08 * distance;
             let out = drop.diameter * (0.3 * f32::from(k % 7) - 0.9);
             drop.position = (eye + direction * (distance - out)).as_dvec3();
         }
@@ -701,7 +703,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         }),
         drops("main_drops: splashes", |gpu| {
             let masks = DropMasks::trace(1.333).and_then(|masks| masks.with_splashes(1.333)).expect("masks");
-            masks_case(gpu, ABOVE, RainOptions::default(), &masks, Part::Drops)
+            masks_case(gpu, LEVEL, RainOptions::default(), &masks, Part::Drops)
         }),
         drops("main_drops: Rousseau 2006", |gpu| {
             let (eye, forward) = (Vec3::new(0.6, 1.4, 3.0), Vec3::new(-0.2, -0.4, -1.0));
