@@ -57,7 +57,7 @@ pub fn functions() -> Vec<FunctionCase> {
 /// All kernel-level cases.
 #[must_use]
 pub fn kernels() -> Vec<KernelCase> {
-    [
+    let mut cases: Vec<KernelCase> = [
         atlas::kernels(),
         bounce::kernels(),
         collision::kernels(),
@@ -80,8 +80,9 @@ pub fn kernels() -> Vec<KernelCase> {
     ]
     .into_iter()
     .flatten()
-    .map(mean_errors::bounded)
-    .collect()
+    .collect();
+    mean_errors::limit(&mut cases);
+    cases
 }
 
 /// Functions without a case, each with the reason.

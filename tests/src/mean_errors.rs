@@ -39,14 +39,15 @@ pub fn measured() -> BTreeMap<&'static str, Measured> {
     TEXT.lines().filter(|text| !text.starts_with('#')).filter_map(line).collect()
 }
 
-/// The case with its limits, if it has been measured.
-#[must_use]
-pub fn bounded(mut case: KernelCase) -> KernelCase {
-    if let Some(worst) = measured().get(case.name) {
-        case.tol.mean = (worst.mean * ROOM).clamp(MIN_MEAN, 1.0);
-        case.tol.outliers = case.tol.outliers.min(worst.outside * ROOM);
+/// Gives cases their limits, as far as they have been measured.
+pub fn limit(cases: &mut [KernelCase]) {
+    let measured = measured();
+    for case in cases {
+        if let Some(worst) = measured.get(case.name) {
+            case.tol.mean = (worst.mean * ROOM).clamp(MIN_MEAN, 1.0);
+            case.tol.outliers = case.tol.outliers.min(worst.outside * ROOM);
+        }
     }
-    case
 }
 
 /// The file.

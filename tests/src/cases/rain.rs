@@ -118,44 +118,83 @@ fn run(width: u32, cpu: &[[f32; 4]], gpu: &[[f32; 4]]) -> Run {
     }
 }
 
-/// Unresolved rain of 500 mm/h, thick within some tens of meters: all drops outside a region around the eye or beside it, small ones
-/// everywhere.
-fn medium(masks: &DropMasks, eye: Vec3) -> RainMedium {
-    let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 500.0).expect("a rain");
-    let region = if eye == INSIDE[0] {
-        Region::Sphere { center: eye.as_dvec3() + DVec3::new(0.3, 0.0, -0.5), radius: 2.5 }
-    } else if eye == BESIDE[0] {
-        Region::Cylinder { base: DVec3::new(-0.5, -0.4, -0.3), radius: 1.5, height: 1.7 }
-    } else {
-        Region::Box { center: eye.as_dvec3() + DVec3::new(0.5, 0.2, -1.0), size: DVec3::splat(7.0) }
-    };
-    let resolved = Resolved {
-        near: 0.05,
-        far: 50.0,
-        pixel_angle: 0.0025,
-        least_pixels: 1.0,
-        min_diameter: 0.4e-3,
-        region,
-    };
-    let pane = (eye == LEVEL[0] || eye == ABOVE[0])
-        .then_some(PanePlane { outward: Vec3::new(0.0, 0.28, -0.96), distance: 0.7 });
-    let velocity = Vec3::new(1.0, -4.0, 0.5);
-    let options = MediumOptions { velocity, pane, ..MediumOptions::default() };
-    let made = RainMedium::new(&rain, &resolved, masks, &options).expect("a medium");
-    let fog = Fog { extinction_per_m: 0.05, height_m: Some(2.0), base_m: 0.0, asymmetry: 0.8, albedo: 0.9 };
-    // Every other placement has fog.
-    made.with_fog((eye == ABOVE[0] || eye == INSIDE[0]).then_some(&fog), 0.0)
+/// The region in which drops are drawn.
+#[derive(Clone, Copy, Debug)]
+enum Drawn {
+    /// A box around the eye.
+    Box,
+    /// A sphere around the eye.
+    Sphere,
+    /// A cylinder beside the eye.
+    Cylinder,
 }
 
-/// What stands before an eye.
-fn scene_at(eye: Vec3) -> SceneData {
-    if eye == INSIDE[0] || eye == BESIDE[0] {
-        lit_scene(&lamps(24))
-    } else if eye == UNDER_SUNS[0] {
-        let is_sun = |lamp: &LightSource| matches!(lamp, LightSource::Directional { .. });
-        lit_scene(&lamps(20).into_iter().filter(is_sun).collect::<Vec<_>>())
-    } else {
-        scene()
+/// Lamps of a scene.
+#[derive(Clone, Copy, Debug)]
+enum Lit {
+    /// A sun and two lamps.
+    Few,
+    /// Many of all kinds.
+    Many,
+    /// Several suns.
+    Suns,
+}
+
+/// Where an eye is, and what is around it.
+#[derive(Clone, Copy, Debug)]
+struct Placement {
+    eye: Vec3,
+    forward: Vec3,
+    drawn: Drawn,
+    lit: Lit,
+    has_pane: bool,
+    has_fog: bool,
+}
+
+impl Placement {
+    /// Behind a pane, in a box of drawn drops, in clear air before few lamps.
+    const fn new(eye: Vec3, forward: Vec3) -> Self {
+        Self { eye, forward, drawn: Drawn::Box, lit: Lit::Few, has_pane: true, has_fog: false }
+    }
+
+    /// What stands there.
+    fn scene(&self) -> SceneData {
+        match self.lit {
+            Lit::Few => scene(),
+            Lit::Many => lit_scene(&lamps(24)),
+            Lit::Suns => {
+                let is_sun = |lamp: &LightSource| matches!(lamp, LightSource::Directional { .. });
+                lit_scene(&lamps(20).into_iter().filter(is_sun).collect::<Vec<_>>())
+            }
+        }
+    }
+
+    /// Unresolved rain of 500 mm/h, thick within some tens of meters: all drops outside the region, small ones everywhere.
+    fn medium(&self, masks: &DropMasks) -> RainMedium {
+        let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 500.0).expect("a rain");
+        let eye = self.eye.as_dvec3();
+        let region = match self.drawn {
+            Drawn::Box => Region::Box { center: eye + DVec3::new(0.5, 0.2, -1.0), size: DVec3::splat(7.0) },
+            Drawn::Sphere => Region::Sphere { center: eye + DVec3::new(0.3, 0.0, -0.5), radius: 2.5 },
+            Drawn::Cylinder => {
+                Region::Cylinder { base: DVec3::new(-0.5, -0.4, -0.3), radius: 1.5, height: 1.7 }
+            }
+        };
+        let resolved = Resolved {
+            near: 0.05,
+            far: 50.0,
+            pixel_angle: 0.0025,
+            least_pixels: 1.0,
+            min_diameter: 0.4e-3,
+            region,
+        };
+        let pane = self.has_pane.then_some(PanePlane { outward: Vec3::new(0.0, 0.28, -0.96), distance: 0.7 });
+        let velocity = Vec3::new(1.0, -4.0, 0.5);
+        let options = MediumOptions { velocity, pane, ..MediumOptions::default() };
+        let made = RainMedium::new(&rain, &resolved, masks, &options).expect("a medium");
+        let fog =
+            Fog { extinction_per_m: 0.05, height_m: Some(2.0), base_m: 0.0, asymmetry: 0.8, albedo: 0.9 };
+        made.with_fog(self.has_fog.then_some(&fog), 0.0)
     }
 }
 
@@ -189,7 +228,7 @@ fn exposure(shutter_s: f64, samples: StreakSamples) -> Exposure {
 
 fn rain_case(
     gpu: &Gpu,
-    placement: [Vec3; 2],
+    placement: Placement,
     form: RefractionForm,
     exposure: Exposure,
     part: Part,
@@ -199,7 +238,7 @@ fn rain_case(
 }
 
 /// Streaks with the light of an atlas.
-fn atlas_case(gpu: &Gpu, placement: [Vec3; 2], shutter_s: f64, pick: StreakPick) -> Result<Run, GpuError> {
+fn atlas_case(gpu: &Gpu, placement: Placement, shutter_s: f64, pick: StreakPick) -> Result<Run, GpuError> {
     let masks = DropMasks::trace(1.333).expect("masks").with_atlas(&atlas(pick));
     let exposure = Exposure { aperture_m: 0.0, ..exposure(shutter_s, StreakSamples::Table) };
     let options = RainOptions { exposure, light: DropLightOptions::ATLAS, ..RainOptions::default() };
@@ -233,11 +272,12 @@ struct Prepared {
 }
 
 impl Prepared {
-    fn new([eye, forward]: [Vec3; 2], options: RainOptions, masks: &DropMasks) -> Self {
-        let scene = scene_at(eye);
+    fn new(placement: Placement, options: RainOptions, masks: &DropMasks) -> Self {
+        let Placement { eye, forward, .. } = placement;
+        let scene = placement.scene();
         let view = Viewpoint { eye, forward, up: Vec3::Y, fov_y: 0.9 };
         let frame = RenderFrame::new(&scene, &view, SIZE, 1, 1, 7).expect("a frame");
-        let medium = medium(masks, eye);
+        let medium = placement.medium(masks);
         let options = RainOptions { capture_size: 64, capture_grid: 2, medium, ..options };
         let clean = SceneView { data: &scene, frame: &frame }.picture();
         let mut shown = drops(eye, forward);
@@ -247,7 +287,7 @@ impl Prepared {
             shown.extend(crowns);
         }
         let rain = Rain::new(&frame.camera, DVec3::from(eye), &shown, masks, &options);
-        assert!(rain.list.len() > 50, "{} drops", rain.list.len());
+        assert!(rain.list.len() > 100, "{} drops", rain.list.len());
         let capture = trace_environment(&scene, &frame, &rain.environment);
         Self { scene, frame, rain, capture, clean }
     }
@@ -255,14 +295,14 @@ impl Prepared {
 
 fn masks_case(
     gpu: &Gpu,
-    [eye, forward]: [Vec3; 2],
+    placement: Placement,
     options: RainOptions,
     masks: &DropMasks,
     part: Part,
 ) -> Result<Run, GpuError> {
     // Masks with an atlas have their own exposures.
-    let key = format!("{eye} {forward} {options:?} {}", masks.has_splashes());
-    let prepared = kept(&key, || Prepared::new([eye, forward], options, masks));
+    let key = format!("{placement:?} {options:?} {}", masks.has_splashes());
+    let prepared = kept(&key, || Prepared::new(placement, options, masks));
     let Prepared { scene, frame, rain, capture, clean } = &*prepared;
     let view = SceneView { data: scene, frame };
     let both = [rain.lights(&view, masks).expect("lamps"), rain.streak_lights(&view, masks).expect("lamps")];
@@ -399,6 +439,8 @@ const SEEN: Tol = Tol::relative(
 )
 .with_outliers(1.0e-2);
 
+const FILTERED: Tol = Tol::relative(1.0e-4, 1.0e-6, "two sums of 49 numbers, and a division (2.5 ulp)");
+
 const TABLED: Tol = Tol::relative(5.0e-3, 4.0e-3, "the capture above; directions in which rays leave a drop")
     .with_outliers(1.0e-2);
 
@@ -416,12 +458,25 @@ const PROFILED: Tol = Tol::relative(
 )
 .with_outliers(2.0e-2);
 
-/// Positions of the eye, and the directions in which it looks.
-const LEVEL: [Vec3; 2] = [Vec3::new(0.6, 0.4, 3.0), Vec3::new(-0.1, 0.0, -1.0)];
-const INSIDE: [Vec3; 2] = [Vec3::new(-1.4, 0.9, 2.6), Vec3::new(0.5, -0.25, -1.0)];
-const BESIDE: [Vec3; 2] = [Vec3::new(2.4, 1.5, 2.4), Vec3::new(-1.0, -0.4, -1.0)];
-const UNDER_SUNS: [Vec3; 2] = [Vec3::new(0.4, 2.5, 3.5), Vec3::new(-0.1, -0.4, -1.0)];
-const ABOVE: [Vec3; 2] = [Vec3::new(0.1, 3.0, 0.4), Vec3::new(0.05, -1.0, -0.1)];
+const LEVEL: Placement = Placement::new(Vec3::new(0.6, 0.4, 3.0), Vec3::new(-0.1, 0.0, -1.0));
+const SLANTED: Placement = Placement::new(Vec3::new(0.6, 1.4, 3.0), Vec3::new(-0.2, -0.4, -1.0));
+const ABOVE: Placement =
+    Placement { has_fog: true, ..Placement::new(Vec3::new(0.1, 3.0, 0.4), Vec3::new(0.05, -1.0, -0.1)) };
+const INSIDE: Placement = Placement {
+    drawn: Drawn::Sphere,
+    lit: Lit::Many,
+    has_pane: false,
+    has_fog: true,
+    ..Placement::new(Vec3::new(-1.4, 0.9, 2.6), Vec3::new(0.5, -0.25, -1.0))
+};
+const BESIDE: Placement = Placement {
+    drawn: Drawn::Cylinder,
+    lit: Lit::Many,
+    has_pane: false,
+    ..Placement::new(Vec3::new(2.4, 1.5, 2.4), Vec3::new(-1.0, -0.4, -1.0))
+};
+const UNDER_SUNS: Placement =
+    Placement { lit: Lit::Suns, ..Placement::new(Vec3::new(0.4, 2.5, 3.5), Vec3::new(-0.1, -0.4, -1.0)) };
 
 /// A number of cells, from 1 to 24.
 fn cells(random: [u32; 4]) -> Vec<u32> {
@@ -609,6 +664,16 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         tol: SCATTERED,
         run,
     };
+    let capture = |name, run| KernelCase {
+        name,
+        kernel: &TRACE_KERNEL,
+        with: &[],
+        overrides: DULL,
+        text: None,
+        tol: CAPTURED,
+        run,
+    };
+    let filter = |name, run| KernelCase { tol: FILTERED, ..medium(name, &MEDIUM_FILTER_KERNEL, run) };
     let profiles = |name, run| KernelCase {
         name,
         kernel: &STREAK_LIGHT_KERNEL,
@@ -619,30 +684,12 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         run,
     };
     vec![
-        KernelCase {
-            name: "main_trace: a capture with a sun and lamps",
-            kernel: &TRACE_KERNEL,
-            with: &[],
-            overrides: DULL,
-            text: None,
-            tol: CAPTURED,
-            run: |gpu| {
-                let (eye, forward) = (Vec3::new(0.6, 1.4, 3.0), Vec3::new(-0.2, -0.4, -1.0));
-                let still = Exposure::default();
-                rain_case(gpu, [eye, forward], RefractionForm::Direction, still, Part::Capture)
-            },
-        },
-        KernelCase {
-            name: "main_trace: a capture with many suns",
-            kernel: &TRACE_KERNEL,
-            with: &[],
-            overrides: DULL,
-            text: None,
-            tol: CAPTURED,
-            run: |gpu| {
-                rain_case(gpu, UNDER_SUNS, RefractionForm::Direction, Exposure::default(), Part::Capture)
-            },
-        },
+        capture("main_trace: a capture with a sun and lamps", |gpu| {
+            rain_case(gpu, SLANTED, RefractionForm::Direction, Exposure::default(), Part::Capture)
+        }),
+        capture("main_trace: a capture with many suns", |gpu| {
+            rain_case(gpu, UNDER_SUNS, RefractionForm::Direction, Exposure::default(), Part::Capture)
+        }),
         KernelCase {
             name: "main_compose: a plate through rain",
             kernel: &COMPOSE_KERNEL,
@@ -675,39 +722,30 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             let options = RainOptions { light, ..RainOptions::default() };
             masks_case(gpu, BESIDE, options, &DropMasks::trace(1.333).expect("masks"), Part::Medium)
         }),
-        KernelCase {
-            tol: Tol::relative(1.0e-4, 1.0e-6, "two sums of 49 numbers, and a division (2.5 ulp)"),
-            ..medium("main_medium_filter: many lamps in fog", &MEDIUM_FILTER_KERNEL, |gpu| {
-                rain_case(gpu, INSIDE, RefractionForm::Direction, Exposure::default(), Part::Filter)
-            })
-        },
+        filter("main_medium_filter: many lamps in fog", |gpu| {
+            rain_case(gpu, INSIDE, RefractionForm::Direction, Exposure::default(), Part::Filter)
+        }),
         KernelCase {
             tol: SEEN,
             ..medium("main_medium_light: shadows", &MEDIUM_LIGHT_KERNEL, |gpu| {
                 rain_case(gpu, LEVEL, RefractionForm::Direction, Exposure::default(), Part::Seen)
             })
         },
-        KernelCase {
-            tol: Tol::relative(1.0e-4, 1.0e-6, "two sums of 49 numbers, and a division (2.5 ulp)"),
-            ..medium("main_medium_filter: lamps and sun", &MEDIUM_FILTER_KERNEL, |gpu| {
-                rain_case(gpu, LEVEL, RefractionForm::Direction, Exposure::default(), Part::Filter)
-            })
-        },
+        filter("main_medium_filter: lamps and sun", |gpu| {
+            rain_case(gpu, LEVEL, RefractionForm::Direction, Exposure::default(), Part::Filter)
+        }),
         drops("main_drops: level", |gpu| {
-            let (eye, forward) = (Vec3::new(0.6, 0.4, 3.0), Vec3::new(-0.1, 0.0, -1.0));
-            rain_case(gpu, [eye, forward], RefractionForm::Direction, Exposure::default(), Part::Drops)
+            rain_case(gpu, LEVEL, RefractionForm::Direction, Exposure::default(), Part::Drops)
         }),
         drops("main_drops: from above", |gpu| {
-            let (eye, forward) = (Vec3::new(0.1, 3.0, 0.4), Vec3::new(0.05, -1.0, -0.1));
-            rain_case(gpu, [eye, forward], RefractionForm::Direction, Exposure::default(), Part::Drops)
+            rain_case(gpu, ABOVE, RefractionForm::Direction, Exposure::default(), Part::Drops)
         }),
         drops("main_drops: splashes", |gpu| {
             let masks = DropMasks::trace(1.333).and_then(|masks| masks.with_splashes(1.333)).expect("masks");
             masks_case(gpu, LEVEL, RainOptions::default(), &masks, Part::Drops)
         }),
         drops("main_drops: Rousseau 2006", |gpu| {
-            let (eye, forward) = (Vec3::new(0.6, 1.4, 3.0), Vec3::new(-0.2, -0.4, -1.0));
-            rain_case(gpu, [eye, forward], RefractionForm::Rousseau2006, Exposure::default(), Part::Drops)
+            rain_case(gpu, SLANTED, RefractionForm::Rousseau2006, Exposure::default(), Part::Drops)
         }),
         drops("main_drops: light of Rousseau 2006", |gpu| {
             let light = DropLightOptions { form: DropLightForm::Rousseau2006, glints: 8 };

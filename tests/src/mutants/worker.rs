@@ -76,9 +76,9 @@ struct KernelBench {
     took: Option<Option<Duration>>,
 }
 
-/// Largest numbers of kernel-level cases that a mutant is shown to, where its function has a case of its own and where
-/// it has none. The first of each kernel come first.
-const MAX_KERNEL_CASES: [usize; 2] = [2, 99];
+/// Largest number of kernel-level cases that a mutant is shown to, where its function has a case of its own; where it has none, it
+/// is shown to all. The first of each kernel come first.
+const MAX_KERNEL_CASES: usize = 2;
 
 /// Largest number of function-level cases that a mutant is shown to, its own first.
 const MAX_FUNCTION_CASES: usize = 12;
@@ -253,9 +253,12 @@ impl Bench {
             }
         }
         order.sort_unstable();
-        let [own, none] = MAX_KERNEL_CASES;
         let has_own = self.functions.iter().any(|bench| bench.case.function == name);
-        order.into_iter().take(if has_own { own } else { none }).map(|(_, at)| at).collect()
+        order
+            .into_iter()
+            .take(if has_own { MAX_KERNEL_CASES } else { usize::MAX })
+            .map(|(_, at)| at)
+            .collect()
     }
 }
 
