@@ -89,7 +89,7 @@ fn hosts() -> Vec<Host> {
             eye, width, right, height, up, seed, forward, pixel_angle),
         host!(RenderFrame as "RenderFrame" in &render::scene::DATA,
             camera, grid, slots, lights, light_count, sky_rays, first_row, nearest, ray_fraction, projection, suns_out, puddles, puddle_count, pane,
-            skylight_pass, wetness, emitters, sky_levels, sky_irradiance),
+            turn, wetness, emitters, sky_levels, sky_irradiance),
         host!(RenderCorner as "RenderCorner" in &render::scene::DATA, normal, material, tangent, uv, color),
         host!(TraceSlot as "TraceSlot" in &render::scene::TRACE, position, normal, light, look, factor),
         host!(TraceAmbient as "TraceAmbient" in &render::scene::TRACE, base, mirror),
@@ -209,10 +209,21 @@ fn host_structs_have_the_layout_of_their_wgsl() {
     }
 }
 
-/// A struct that a buffer holds has a host counterpart; others are the shader's own.
+/// Structs that the device alone writes and reads, with their modules and the sizes by which the host makes room for them.
+const DEVICE_ONLY: [(&str, &Module, u64); 1] =
+    [("TraceState", &render::scene::TRACE, render::scene::TRACE_STATE_BYTES)];
+
+#[test]
+fn there_is_room_for_structs_of_the_device_alone() {
+    for (name, module, bytes) in DEVICE_ONLY {
+        assert_eq!(layout(module, name).0 as u64, bytes, "size of {name}");
+    }
+}
+
+/// A struct that a buffer holds has a host counterpart, if it is not the device's alone; others are the shader's own.
 #[test]
 fn every_struct_in_a_buffer_has_a_host() {
-    let hosts: Vec<_> = hosts().iter().map(|h| h.wgsl).collect();
+    let hosts: Vec<_> = hosts().iter().map(|h| h.wgsl).chain(DEVICE_ONLY.map(|(name, ..)| name)).collect();
     for module in modules() {
         let parsed = parse(&compose(&[module]));
         for (_, variable) in parsed.global_variables.iter() {

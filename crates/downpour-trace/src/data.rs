@@ -66,8 +66,8 @@ pub struct RenderFrame {
     pub puddle_count: u32,
     /// Row of the table where the pane that casts shadows begins; 0: no pane.
     pub pane: u32,
-    /// Pass of the means over neighboring pixels.
-    pub skylight_pass: u32,
+    /// Turn of a dispatch: pass of the means over neighboring pixels, or sample of `main_trace_sample`.
+    pub turn: u32,
     /// Row of the table where the wetness of surfaces begins; 0: all is dry.
     pub wetness: u32,
     /// Word of the texels where the tree of surfaces that shine begins; 0: none shine.
@@ -233,7 +233,7 @@ impl RenderFrame {
             puddles: scene.puddles,
             puddle_count: scene.puddle_count,
             pane: scene.pane,
-            skylight_pass: 0,
+            turn: 0,
             wetness: scene.wetness,
             emitters: scene.emitters,
             sky_levels: scene.sky_levels,

@@ -11,4 +11,7 @@ pub use picture::{
     PictureUse,
 };
 pub use plate::ScenePlate;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
+pub use scene::SampleDispatches;
 pub use scene::{SceneOnGpu, ScenePass, ScenePipeline};

@@ -144,6 +144,33 @@ impl TraceSum {
     }
 }
 
+/// A pixel with some of its samples.
+struct TraceState {
+    sum: Vec3,
+    nearest: f32,
+    base: TraceSum,
+    mirror: TraceSum,
+    last: ViewPath,
+    count: u16,
+    /// True if it needs no more samples.
+    ended: bool,
+}
+
+impl TraceState {
+    /// A pixel before its first sample.
+    fn trace_begin() -> Self {
+        Self {
+            sum: Vec3::ZERO,
+            nearest: SCENE_FAR,
+            base: TraceSum::NONE,
+            mirror: TraceSum::NONE,
+            last: ViewPath::NOTHING,
+            count: 0,
+            ended: false,
+        }
+    }
+}
+
 impl SceneView<'_> {
     /// The direction of a position of the picture or of the capture, in pixels from the top left.
     fn trace_direction(&self, x: f32, y: f32) -> Vec3 {
@@ -153,50 +180,74 @@ impl SceneView<'_> {
         self.frame.camera.camera_direction(x, y)
     }
 
-    /// A pixel: mean radiance, and the distance of what stands nearest in it. In the picture the light of sky and
-    /// surfaces on the first surface is left out; it is the second of the two.
+    /// A texel of the capture: the mean of what its samples have found, where the sky is that of all directions in it, and the
+    /// suns.
+    fn trace_captured(&self, mean: Vec3, nearest: f32, x: u32, y: u32) -> Vec3 {
+        let is_sky = nearest >= SCENE_FAR && self.frame.projection == SCENE_OCTAHEDRAL;
+        let seen = if is_sky { capture_sky(self, x, y) } else { mean };
+        seen + capture_suns(self, x, y)
+    }
+
+    /// The pixel with sample `k` of it, unless it needs no more.
+    fn trace_sample(&self, state: &mut TraceState, x: u32, y: u32, k: u32) {
+        if state.ended {
+            return;
+        }
+        let n = self.frame.grid;
+        // First the opposite corners.
+        let index = match k {
+            0 => 0,
+            1 => n * n - 1,
+            _ => k - 1,
+        };
+        let dx = ((index % n) as f32 + 0.5) / n as f32;
+        let dy = ((index / n) as f32 + 0.5) / n as f32;
+        let direction = self.trace_direction(x as f32 + dx, y as f32 + dy);
+        let random = path_lattice_words(self.frame.camera.seed, x, y, index);
+        let camera = &self.frame.camera;
+        let path = self.path_trace(camera.eye, direction, camera.pixel_angle, random, &state.last);
+        let is_picture = self.frame.projection == SCENE_PICTURE;
+        state.sum += if is_picture { path.radiance } else { path.path_radiance() };
+        state.base = state.base.trace_add(&path.base, self.frame);
+        state.mirror = state.mirror.trace_add(&path.mirror, self.frame);
+        state.nearest = state.nearest.min(path.distance);
+        state.count += 1;
+        let both_sky = path.distance >= SCENE_FAR && state.last.distance >= SCENE_FAR;
+        let same = k == 1 && (path.again || both_sky);
+        state.last = path;
+        if same || k + 1 >= n * n {
+            state.ended = true;
+            if !is_picture {
+                let mean = state.sum * (1.0 / f32::from(state.count));
+                state.sum = self.trace_captured(mean, state.nearest, x, y);
+                state.count = 1;
+            }
+        }
+    }
+
+    /// A pixel that needs no more samples: mean radiance, and the distance of what stands nearest in it. In the picture the light
+    /// of sky and surfaces on the first surface is left out; it is the second of the two.
+    fn trace_seen(&self, state: &TraceState) -> (Vec4, TraceAmbient) {
+        let fraction = 1.0 / f32::from(state.count);
+        let mut ambient = TraceAmbient::default();
+        if self.frame.projection == SCENE_PICTURE {
+            let mean = |sum: &TraceSum| sum.trace_mean(fraction, self.frame.camera.eye);
+            ambient = TraceAmbient { base: mean(&state.base), mirror: mean(&state.mirror) };
+        }
+        ((state.sum * fraction).extend(state.nearest), ambient)
+    }
+
+    /// A pixel with all its samples: radiance and distance, and what light of sky and surfaces goes to the filter.
     #[must_use]
     pub fn trace_pixel(&self, x: u32, y: u32) -> (Vec4, TraceAmbient) {
-        let is_picture = self.frame.projection == SCENE_PICTURE;
-        let (mut sum, mut nearest) = (Vec3::ZERO, SCENE_FAR);
-        let (mut base, mut mirror) = (TraceSum::NONE, TraceSum::NONE);
-        let n = self.frame.grid;
-        let eye = self.frame.camera.eye;
-        let mut last = ViewPath::NOTHING;
-        let mut count = 0u16;
-        for k in 0..n * n {
-            // First the opposite corners.
-            let index = match k {
-                0 => 0,
-                1 => n * n - 1,
-                _ => k - 1,
-            };
-            let dx = ((index % n) as f32 + 0.5) / n as f32;
-            let dy = ((index / n) as f32 + 0.5) / n as f32;
-            let direction = self.trace_direction(x as f32 + dx, y as f32 + dy);
-            let random = path_lattice_words(self.frame.camera.seed, x, y, index);
-            let path = self.path_trace(eye, direction, self.frame.camera.pixel_angle, random, &last);
-            sum += if is_picture { path.radiance } else { path.path_radiance() };
-            base = base.trace_add(&path.base, self.frame);
-            mirror = mirror.trace_add(&path.mirror, self.frame);
-            nearest = nearest.min(path.distance);
-            count += 1;
-            let both_sky = path.distance >= SCENE_FAR && last.distance >= SCENE_FAR;
-            if k == 1 && (path.again || both_sky) {
+        let mut state = TraceState::trace_begin();
+        for k in 0.. {
+            self.trace_sample(&mut state, x, y, k);
+            if state.ended {
                 break;
             }
-            last = path;
         }
-        let fraction = 1.0 / f32::from(count);
-        if !is_picture {
-            let is_sky = nearest >= SCENE_FAR && self.frame.projection == SCENE_OCTAHEDRAL;
-            let seen = if is_sky { capture_sky(self, x, y) } else { sum * fraction };
-            let radiance = seen + capture_suns(self, x, y);
-            return (radiance.extend(nearest), TraceAmbient::default());
-        }
-        let ambient =
-            TraceAmbient { base: base.trace_mean(fraction, eye), mirror: mirror.trace_mean(fraction, eye) };
-        ((sum * fraction).extend(nearest), ambient)
+        self.trace_seen(&state)
     }
 
     /// The whole picture, rows from the top, in parallel; the same bits for any number of threads.

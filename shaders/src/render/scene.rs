@@ -20,7 +20,7 @@ pub const MODULES: &[&Module] =
     &[&SCENE_CONSTANTS, &DATA, &TEXTURE, &SKY, &SURFACE, &EMITTER, &SCENE, &CAPTURE, &TRACE, &SKYLIGHT];
 
 /// Every kernel of this file.
-pub const KERNELS: &[&Kernel] = &[&TRACE_KERNEL, &SKYLIGHT_KERNEL];
+pub const KERNELS: &[&Kernel] = &[&TRACE_KERNEL, &TRACE_SAMPLE_KERNEL, &TRACE_SEEN_KERNEL, &SKYLIGHT_KERNEL];
 
 shared_constants! {
     /// Numbers of the scene's tables and rays.
@@ -219,8 +219,19 @@ pub static CAPTURE: Module = Module {
     uses: &[&SCENE, &LIGHT, &SKY, &PACKING],
 };
 
-/// One invocation per pixel.
+/// All samples of the pixels; one invocation per pixel.
 pub static TRACE_KERNEL: Kernel = Kernel { entry: "main_trace", module: &TRACE, workgroup: [8, 8, 1] };
+
+/// One sample of the pixels; one invocation per pixel.
+pub static TRACE_SAMPLE_KERNEL: Kernel =
+    Kernel { entry: "main_trace_sample", module: &TRACE, workgroup: [8, 8, 1] };
+
+/// The pixels of all their samples; one invocation per pixel.
+pub static TRACE_SEEN_KERNEL: Kernel =
+    Kernel { entry: "main_trace_seen", module: &TRACE, workgroup: [8, 8, 1] };
+
+/// Bytes of a pixel that `main_trace_sample` keeps from sample to sample (`TraceState`).
+pub const TRACE_STATE_BYTES: u64 = 384;
 
 /// The sky's light over neighboring pixels. Twin: `downpour_trace::skylight`.
 pub static SKYLIGHT: Module = Module {

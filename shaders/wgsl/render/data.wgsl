@@ -26,8 +26,8 @@ struct RenderFrame {
     puddle_count: u32,
     // Row of the table where the pane begins that throws shadows; 0: none.
     pane: u32,
-    // Pass of the means over neighboring pixels.
-    skylight_pass: u32,
+    // Turn of a dispatch: pass of the means over neighboring pixels, or sample of main_trace_sample.
+    turn: u32,
     // Row of the table where the wetness of surfaces begins; 0: all is dry.
     wetness: u32,
     // Word of the texels where the tree of surfaces that shine begins; 0: none shine.

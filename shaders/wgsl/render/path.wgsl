@@ -24,10 +24,10 @@ struct ViewPath {
     facet: vec3f,
     material: u32,
     position: vec3f,
-    // True if it is the surface that the sample before has seen.
-    again: bool,
-    // True if its result is the same over a pixel: no mirror, nothing behind a pane.
-    plain: bool,
+    // 1 if it is the surface that the sample before has seen.
+    again: u32,
+    // 1 if its result is the same over a pixel: no mirror, nothing behind a pane.
+    plain: u32,
     // Light of sky and surfaces on the diffuse base of the first opaque surface, over pi.
     base: PathSlot,
     // Light that the first gloss or mirror shows: of a mirror, on the diffuse base of what stands in it.
@@ -105,7 +105,7 @@ fn path_radiance(path: ViewPath) -> vec3f {
 
 // True if a surface is the same that another sample of the pixel has met.
 fn path_same_surface(last: ViewPath, material: u32, facet: vec3f, position: vec3f, distance: f32) -> bool {
-    return last.plain
+    return last.plain > 0u
         && last.material == material
         && dot(last.facet, facet) > PATH_SAME_FACET
         && abs(dot(last.facet, position - last.position)) < PATH_SAME_PLANE * distance;
@@ -398,7 +398,7 @@ fn path_show(
         shown.base = PathSlot(base, meeting.slack, of_base, 0.0, surface.normal, surface.position);
         let mirrors = plan.mirrors > 0u && (surface.roughness < PATH_CURVED || !plan.kept)
             && path_max(plan.gloss) > PATH_PLAIN_GLOSS;
-        shown.plain = !(mirrors || layer > 0u || meeting.is_soft);
+        shown.plain = select(1u, 0u, mirrors || layer > 0u || meeting.is_soft);
     } else {
         shown.radiance += of_base * base;
     }
@@ -534,7 +534,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     } else if layer == 0u
                         && path_same_surface(last, material, found.facet, found.position, hit.distance) {
                         var same = last;
-                        same.again = true;
+                        same.again = 1u;
                         return same;
                     }
                     if SCENE_WET && under {

@@ -152,7 +152,7 @@ fn main_skylight(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let index = y * render_frame.camera.width + id.x;
-    let step = render_frame.skylight_pass;
+    let step = render_frame.turn;
     for (var slot = 0u; slot < 2u; slot += 1u) {
         var mean = vec4f(0.0);
         if step == 0u {

@@ -8,6 +8,9 @@
 @group(0) @binding(7) var<storage, read_write> trace_picture: array<vec4f>;
 @group(0) @binding(8) var<storage, read_write> trace_ambient: array<TraceAmbient>;
 
+// Samples of the pixels of a band of rows so far: main_trace_sample.
+@group(0) @binding(9) var<storage, read_write> trace_states: array<TraceState>;
+
 // Light that is denoised over neighboring pixels, packed.
 struct TraceSlot {
     position: vec3f,
@@ -34,6 +37,18 @@ struct TraceAmbient {
 struct TraceSum {
     slot: PathSlot,
     weight: f32,
+}
+
+// A pixel with some of its samples.
+struct TraceState {
+    sum: vec3f,
+    nearest: f32,
+    base: TraceSum,
+    mirror: TraceSum,
+    last: ViewPath,
+    count: u32,
+    // 1: it needs no more samples.
+    ended: u32,
 }
 
 // A slot, packed.
@@ -127,52 +142,80 @@ fn trace_direction(x: f32, y: f32) -> vec3f {
     return camera_direction(render_frame.camera, x, y);
 }
 
-// A pixel: mean radiance, and the distance of what stands nearest in it. In the picture the light of sky and surfaces on the
-// first surface is left out and goes to the filter.
-fn trace_pixel(x: u32, y: u32) -> vec4f {
-    let is_picture = render_frame.projection == SCENE_PICTURE;
-    var sum = vec3f(0.0);
-    var base = TraceSum();
-    var mirror = TraceSum();
-    var nearest = SCENE_FAR;
-    let n = render_frame.grid;
-    var last = path_nothing();
-    var count = 0u;
-    for (var k = 0u; k < n * n; k += 1u) {
-        // First the opposite corners.
-        let index = select(select(k - 1u, n * n - 1u, k == 1u), 0u, k == 0u);
-        let dx = (f32(index % n) + 0.5) / f32(n);
-        let dy = (f32(index / n) + 0.5) / f32(n);
-        let direction = trace_direction(f32(x) + dx, f32(y) + dy);
-        let random = path_lattice_words(x, y, index);
-        let path = path_trace(render_frame.camera.eye, direction, render_frame.camera.pixel_angle, random, last);
-        if is_picture {
-            sum += path.radiance;
-        } else {
-            sum += path_radiance(path);
-        }
-        base = trace_add(base, path.base);
-        mirror = trace_add(mirror, path.mirror);
-        nearest = min(nearest, path.distance);
-        count += 1u;
-        let both_sky = path.distance >= SCENE_FAR && last.distance >= SCENE_FAR;
-        if k == 1u && (path.again || both_sky) {
-            break;
-        }
-        last = path;
-    }
-    let fraction = 1.0 / f32(count);
-    if is_picture {
-        trace_ambient[y * render_frame.camera.width + x] = TraceAmbient(trace_mean(base, fraction), trace_mean(mirror, fraction));
-        return vec4f(sum * fraction, nearest);
-    }
-    var seen = sum * fraction;
+// A pixel before its first sample.
+fn trace_begin() -> TraceState {
+    var state = TraceState();
+    state.nearest = SCENE_FAR;
+    state.last = path_nothing();
+    return state;
+}
+
+// A texel of the capture: the mean of what its samples have found, where the sky is that of all directions in it, and the
+// suns.
+fn trace_captured(mean: vec3f, nearest: f32, x: u32, y: u32) -> vec3f {
+    var seen = mean;
     if nearest >= SCENE_FAR && render_frame.projection == SCENE_OCTAHEDRAL {
         seen = capture_sky(x, y);
     }
-    return vec4f(seen + capture_suns(x, y), nearest);
+    return seen + capture_suns(x, y);
 }
 
+// The pixel with sample `k` of it, unless it needs no more.
+fn trace_sample(state: ptr<function, TraceState>, x: u32, y: u32, k: u32) {
+    if (*state).ended > 0u {
+        return;
+    }
+    let n = render_frame.grid;
+    // First the opposite corners.
+    let index = select(select(k - 1u, n * n - 1u, k == 1u), 0u, k == 0u);
+    let dx = (f32(index % n) + 0.5) / f32(n);
+    let dy = (f32(index / n) + 0.5) / f32(n);
+    let direction = trace_direction(f32(x) + dx, f32(y) + dy);
+    let random = path_lattice_words(x, y, index);
+    let last = (*state).last;
+    let path = path_trace(render_frame.camera.eye, direction, render_frame.camera.pixel_angle, random, last);
+    if render_frame.projection == SCENE_PICTURE {
+        (*state).sum += path.radiance;
+    } else {
+        (*state).sum += path_radiance(path);
+    }
+    (*state).base = trace_add((*state).base, path.base);
+    (*state).mirror = trace_add((*state).mirror, path.mirror);
+    (*state).nearest = min((*state).nearest, path.distance);
+    (*state).count += 1u;
+    let both_sky = path.distance >= SCENE_FAR && last.distance >= SCENE_FAR;
+    let same = k == 1u && (path.again > 0u || both_sky);
+    (*state).last = path;
+    if same || k + 1u >= n * n {
+        (*state).ended = 1u;
+        if render_frame.projection != SCENE_PICTURE {
+            (*state).sum = trace_captured((*state).sum * (1.0 / f32((*state).count)), (*state).nearest, x, y);
+            (*state).count = 1u;
+        }
+    }
+}
+
+// A pixel that needs no more samples: mean radiance, and the distance of what stands nearest in it. In the picture the light of
+// sky and surfaces on the first surface is left out and goes to the filter.
+fn trace_seen(state: TraceState, x: u32, y: u32) -> vec4f {
+    let fraction = 1.0 / f32(state.count);
+    if render_frame.projection == SCENE_PICTURE {
+        let ambient = TraceAmbient(trace_mean(state.base, fraction), trace_mean(state.mirror, fraction));
+        trace_ambient[y * render_frame.camera.width + x] = ambient;
+    }
+    return vec4f(state.sum * fraction, state.nearest);
+}
+
+// A pixel with all its samples.
+fn trace_pixel(x: u32, y: u32) -> vec4f {
+    var state = trace_begin();
+    for (var k = 0u; state.ended == 0u; k += 1u) {
+        trace_sample(&state, x, y, k);
+    }
+    return trace_seen(state, x, y);
+}
+
+// All samples of the pixels.
 @compute @workgroup_size(8, 8, 1)
 fn main_trace(@builtin(global_invocation_id) id: vec3u) {
     let y = id.y + render_frame.first_row;
@@ -180,4 +223,31 @@ fn main_trace(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     trace_picture[y * render_frame.camera.width + id.x] = trace_pixel(id.x, y);
+}
+
+// One sample of the pixels: that of the turn. For a driver that ends the loops of an invocation after so many turns.
+@compute @workgroup_size(8, 8, 1)
+fn main_trace_sample(@builtin(global_invocation_id) id: vec3u) {
+    let y = id.y + render_frame.first_row;
+    if id.x >= render_frame.camera.width || y >= render_frame.camera.height {
+        return;
+    }
+    let at = id.y * render_frame.camera.width + id.x;
+    var state = trace_begin();
+    if render_frame.turn > 0u {
+        state = trace_states[at];
+    }
+    trace_sample(&state, id.x, y, render_frame.turn);
+    trace_states[at] = state;
+}
+
+// The pixels of all those samples.
+@compute @workgroup_size(8, 8, 1)
+fn main_trace_seen(@builtin(global_invocation_id) id: vec3u) {
+    let y = id.y + render_frame.first_row;
+    if id.x >= render_frame.camera.width || y >= render_frame.camera.height {
+        return;
+    }
+    let state = trace_states[id.y * render_frame.camera.width + id.x];
+    trace_picture[y * render_frame.camera.width + id.x] = trace_seen(state, id.x, y);
 }

@@ -28,12 +28,12 @@ use downpour_shaders::render::rain::{
     COMPOSE, COMPOSE_KERNEL, DROPS_KERNEL, STREAK, STREAK_CELL, STREAK_LIGHT_KERNEL, STREAK_RAYS,
     STREAK_RAYS_KERNEL, STREAK_SPAN, STREAK_TABLE_KERNEL,
 };
-use downpour_shaders::render::scene::TRACE_KERNEL;
+use downpour_shaders::render::scene::{TRACE_KERNEL, TRACE_SEEN_KERNEL};
 use downpour_sim::field::{DropKind, FallingDrop};
 use downpour_sim::resolved::{Region, Resolved};
 use downpour_trace::capture::trace_environment;
 use downpour_trace::data::{RenderFrame, SceneData};
-use downpour_trace::gpu::ScenePipeline;
+use downpour_trace::gpu::{SampleDispatches, ScenePipeline};
 use downpour_trace::scene::SceneView;
 use downpour_weather::Fog;
 use glam::{DVec3, Vec2, Vec3, Vec4};
@@ -199,9 +199,11 @@ impl Placement {
 }
 
 /// Part of a picture that is compared.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 enum Part {
     Capture,
+    /// The capture, each sample of a texel in a dispatch of its own.
+    CaptureBySamples,
     Means,
     Chords,
     Profiles,
@@ -306,7 +308,9 @@ fn masks_case(
     let Prepared { scene, frame, rain, capture, clean } = &*prepared;
     let view = SceneView { data: scene, frame };
     let both = [rain.lights(&view, masks).expect("lamps"), rain.streak_lights(&view, masks).expect("lamps")];
-    let (scenes, rains) = (ScenePipeline::new(gpu)?, RainPipeline::new(gpu)?);
+    let samples =
+        if part == Part::CaptureBySamples { SampleDispatches::Apart } else { SampleDispatches::Together };
+    let (scenes, rains) = (ScenePipeline::with_samples(gpu, samples)?, RainPipeline::new(gpu)?);
     let uploaded = scenes.upload(scene)?;
     let clean_buffer = gpu.storage_buffer("clean", clean)?;
     let lights = &both[0];
@@ -320,7 +324,7 @@ fn masks_case(
     let found = || kept(&format!("{key} found"), || rain.medium_light(lights).found(clean));
     gpu.submit(&plate.dispatches(&pass))?;
     match part {
-        Part::Capture => {
+        Part::Capture | Part::CaptureBySamples => {
             // The finest level: the others are the kernel of the reduction.
             let finest = 64 * 64;
             Ok(run(64, &capture.texels[..finest], &pass.environment_texels()?[..finest]))
@@ -690,6 +694,14 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         capture("main_trace: a capture with many suns", |gpu| {
             rain_case(gpu, UNDER_SUNS, RefractionForm::Direction, Exposure::default(), Part::Capture)
         }),
+        KernelCase {
+            kernel: &TRACE_SEEN_KERNEL,
+            overrides: &[],
+            ..capture("main_trace_seen: a capture with a sun and lamps", |gpu| {
+                let part = Part::CaptureBySamples;
+                rain_case(gpu, SLANTED, RefractionForm::Direction, Exposure::default(), part)
+            })
+        },
         KernelCase {
             name: "main_compose: a plate through rain",
             kernel: &COMPOSE_KERNEL,

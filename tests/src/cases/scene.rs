@@ -9,7 +9,7 @@ use downpour_shaders::render::path::PATH_LATTICE;
 use downpour_shaders::render::scatter::SCATTER;
 use downpour_shaders::render::scene::{
     EMITTER, SCENE, SCENE_BLENDED, SCENE_DOUBLE_SIDED, SCENE_MASKED, SCENE_UNLIT, SKYLIGHT, SKYLIGHT_KERNEL,
-    TEXTURE, TRACE_KERNEL,
+    TEXTURE, TRACE_KERNEL, TRACE_SAMPLE_KERNEL,
 };
 use downpour_trace::brdf::{
     brdf_direct, brdf_distribution, brdf_environment, brdf_fresnel, brdf_masking, brdf_visibility,
@@ -18,7 +18,7 @@ use downpour_trace::brdf::{
 use downpour_trace::builder::{MeshPart, SceneBuilder};
 use downpour_trace::data::{RenderFrame, SceneData};
 use downpour_trace::emitter::{emitter_color, emitter_weight};
-use downpour_trace::gpu::ScenePipeline;
+use downpour_trace::gpu::{SampleDispatches, ScenePipeline};
 use downpour_trace::material::{MaterialLook, TextureUse};
 use downpour_trace::path::path_lattice_numbers;
 use downpour_trace::scatter::{
@@ -408,11 +408,21 @@ const SIZE: [u32; 2] = [93, 62];
 
 /// A picture of a scene, from an eye that looks at its middle.
 pub(super) fn picture(gpu: &Gpu, scene: &SceneData, eye: Vec3, sky_rays: u32) -> Result<Run, GpuError> {
+    picture_by(SampleDispatches::Together, gpu, scene, eye, sky_rays)
+}
+
+fn picture_by(
+    samples: SampleDispatches,
+    gpu: &Gpu,
+    scene: &SceneData,
+    eye: Vec3,
+    sky_rays: u32,
+) -> Result<Run, GpuError> {
     let view = Viewpoint { eye, forward: -eye, up: Vec3::Y, fov_y: 0.9 };
     let frame = RenderFrame::new(scene, &view, SIZE, 2, sky_rays, 7).expect("a frame");
     let key = format!("picture {eye} {sky_rays} {}", digest(scene));
     let cpu = kept(&key, || SceneView { data: scene, frame: &frame }.picture());
-    let pipeline = ScenePipeline::new(gpu)?;
+    let pipeline = ScenePipeline::with_samples(gpu, samples)?;
     let gpu = pipeline.picture(&pipeline.upload(scene)?, &frame)?;
     let words = |picture: &[[f32; 4]]| picture.iter().flatten().map(|v| v.to_bits()).collect();
     Ok(Run {
@@ -475,5 +485,12 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             // The sun stands behind the middle.
             picture(gpu, &shining_scene(), Vec3::new(1.6, -3.2, -1.8), 1)
         }),
+        KernelCase {
+            kernel: &TRACE_SAMPLE_KERNEL,
+            ..case("main_trace_sample: surfaces that shine, and lamps with a size", SHINING, |gpu| {
+                let eye = Vec3::new(0.6, 1.4, 3.0);
+                picture_by(SampleDispatches::Apart, gpu, &shining_scene(), eye, 2)
+            })
+        },
     ]
 }

@@ -1,10 +1,10 @@
 //! The plate of a scene on the device, for rain.
 
-use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, GpuError, wgpu};
+use downpour_gpu::{BufferSource, Dispatch, GpuError, wgpu};
 use downpour_render::gpu::{LightingOnGpu, PlateOnGpu, RainPass, RainPipeline};
 use downpour_render::rain::Rain;
 
-use super::scene::{SceneOnGpu, ScenePipeline};
+use super::scene::{SceneOnGpu, ScenePipeline, SceneRays};
 use crate::capture::environment_frame;
 use crate::data::RenderFrame;
 use crate::trace::TraceAmbient;
@@ -12,9 +12,7 @@ use crate::trace::TraceAmbient;
 /// Environment map, lamps and obstacles of a scene, on the device, for rain.
 #[derive(Debug)]
 pub struct ScenePlate<'a> {
-    tracer: &'a ComputeKernel,
-    bindings: wgpu::BindGroup,
-    groups: u32,
+    finest: SceneRays<'a>,
     /// True if the environment map is there already.
     is_kept: bool,
     environment: wgpu::Buffer,
@@ -47,14 +45,13 @@ impl ScenePipeline {
         (environment, is_kept): (wgpu::Buffer, bool),
     ) -> Result<ScenePlate<'_>, GpuError> {
         let of_map = environment_frame(frame, &rain.environment);
-        let uniform = buffers.uniform("frame of the environment map", &of_map)?;
         // An environment map has no filter: nothing is written there.
         let nothing = buffers.storage("no light of the sky", &[TraceAmbient::default()])?;
-        let tracer = self.tracer(&of_map)?;
-        let bindings = tracer.bind(self.gpu(), &scene.buffers(&uniform, &environment, &nothing))?;
+        let rows = of_map.camera.height;
+        let states = self.states(buffers, &of_map.camera, rows)?;
+        let finest = self.rays(buffers, scene, &of_map, [&environment, &nothing], states.as_ref(), rows)?;
         let lighting = scene.lighting(buffers, frame)?;
-        let groups = of_map.camera.width.div_ceil(8);
-        Ok(ScenePlate { tracer, bindings, groups, is_kept, environment, lighting })
+        Ok(ScenePlate { finest, is_kept, environment, lighting })
     }
 }
 
@@ -76,7 +73,6 @@ impl ScenePlate<'_> {
         if self.is_kept {
             return Vec::new();
         }
-        let finest = self.tracer.dispatch(&self.bindings, [self.groups, self.groups, 1]);
-        std::iter::once(finest).chain(pass.environment()).collect()
+        self.finest.dispatches().chain(pass.environment()).collect()
     }
 }

@@ -3,8 +3,11 @@
 use std::sync::{Arc, OnceLock};
 
 use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, FramePasses, Gpu, GpuError, wgpu};
-use downpour_shaders::render::scene::{SKYLIGHT_KERNEL, SKYLIGHT_PASSES, TRACE_KERNEL};
+use downpour_shaders::render::scene::{
+    SKYLIGHT_KERNEL, SKYLIGHT_PASSES, TRACE_KERNEL, TRACE_SAMPLE_KERNEL, TRACE_SEEN_KERNEL, TRACE_STATE_BYTES,
+};
 
+use downpour_render::camera::Camera;
 use downpour_render::gpu::LightingOnGpu;
 
 use crate::data::{RenderFrame, SceneData};
@@ -17,10 +20,30 @@ const PIXELS_PER_DISPATCH: u32 = 1 << 17;
 /// end of each.
 const DISPATCH_MS: f64 = 60.0;
 
+/// How a device comes to the samples of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SampleDispatches {
+    /// All of them in one dispatch.
+    Together,
+    /// Each in a dispatch of its own, with what the pixel has so far in a buffer: software drivers of Mesa end the loops of an
+    /// invocation after 65 535 turns in all, without an error.
+    Apart,
+}
+
+impl SampleDispatches {
+    /// What a device needs.
+    fn of(gpu: &Gpu) -> Self {
+        if gpu.adapter().is_software() { Self::Apart } else { Self::Together }
+    }
+}
+
 /// Pipeline that traces scenes.
 #[derive(Clone, Debug)]
 pub struct ScenePipeline {
     gpu: Gpu,
+    samples: SampleDispatches,
+    /// Pixels of samples that have dispatches of their own.
+    seen: Option<ComputeKernel>,
     /// By what a scene has: [`SceneParts`]. Made for the first scene that has it.
     tracers: [OnceLock<ComputeKernel>; SceneParts::COUNT],
     skylight: ComputeKernel,
@@ -45,24 +68,42 @@ impl ScenePipeline {
     /// # Errors
     /// Returns the error of the GPU.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Self::made(gpu, SampleDispatches::of(gpu))
+    }
+
+    /// Creates the pipeline, whatever the device needs.
+    ///
+    /// # Errors
+    /// Returns the error of the GPU.
+    #[cfg(feature = "parity")]
+    #[doc(hidden)]
+    pub fn with_samples(gpu: &Gpu, samples: SampleDispatches) -> Result<Self, GpuError> {
+        Self::made(gpu, samples)
+    }
+
+    fn made(gpu: &Gpu, samples: SampleDispatches) -> Result<Self, GpuError> {
         let tracers: [OnceLock<ComputeKernel>; SceneParts::COUNT] = Default::default();
         let plain = SceneParts::default();
         tracers[plain.index()].get_or_init({
-            let made = tracer(gpu, plain)?;
+            let made = tracer(gpu, samples, plain)?;
             || made
         });
         let skylight = ComputeKernel::new(gpu, &SKYLIGHT_KERNEL, &[])?;
-        Ok(Self { gpu: gpu.clone(), tracers, skylight })
+        let seen = match samples {
+            SampleDispatches::Together => None,
+            SampleDispatches::Apart => Some(ComputeKernel::new(gpu, &TRACE_SEEN_KERNEL, &[])?),
+        };
+        Ok(Self { gpu: gpu.clone(), samples, seen, tracers, skylight })
     }
 
     /// The kernel that traces a frame, with what the scene has and without what it has not.
-    pub(super) fn tracer(&self, frame: &RenderFrame) -> Result<&ComputeKernel, GpuError> {
+    fn tracer(&self, frame: &RenderFrame) -> Result<&ComputeKernel, GpuError> {
         let parts = SceneParts::of(frame);
         let cell = &self.tracers[parts.index()];
         if let Some(kernel) = cell.get() {
             return Ok(kernel);
         }
-        let made = tracer(&self.gpu, parts)?;
+        let made = tracer(&self.gpu, self.samples, parts)?;
         Ok(cell.get_or_init(|| made))
     }
 
@@ -127,34 +168,89 @@ impl ScenePipeline {
         let paced = sample_ms.map_or(0, |ms| (DISPATCH_MS / (ms * samples).max(1.0e-9)) as u32);
         let rows = paced.max(PIXELS_PER_DISPATCH) / frame.camera.width.max(1);
         let rows = rows.clamp(8, frame.camera.height.max(8)).next_multiple_of(8);
-        let tracer = self.tracer(frame)?;
+        let (mut bands, mut filters) = (Vec::new(), Vec::new());
+        let states = self.states(buffers, &frame.camera, rows.min(frame.camera.height))?;
+        for first_row in (0..frame.camera.height).step_by(rows as usize) {
+            let frame = RenderFrame { first_row, ..*frame };
+            let rows = rows.min(frame.camera.height - first_row);
+            bands.push(self.rays(buffers, scene, &frame, [&picture, &found_light], states.as_ref(), rows)?);
+        }
         let means = || buffers.buffer("means of light", pixels * 32, storage);
         let means = [means()?, means()?];
-        let (mut bands, mut filters) = (Vec::new(), Vec::new());
-        for skylight_pass in 0..=SKYLIGHT_PASSES {
-            let [from, to] = [&means[(skylight_pass as usize + 1) % 2], &means[skylight_pass as usize % 2]];
+        for turn in 0..=SKYLIGHT_PASSES {
+            let [from, to] = [&means[(turn as usize + 1) % 2], &means[turn as usize % 2]];
             for first_row in (0..frame.camera.height).step_by(rows as usize) {
-                let frame = RenderFrame { first_row, skylight_pass, ..*frame };
+                let groups = groups(&frame.camera, rows.min(frame.camera.height - first_row));
+                let frame = RenderFrame { first_row, turn, ..*frame };
                 let uniform = buffers.uniform("frame", &frame)?;
-                let groups = [
-                    frame.camera.width.div_ceil(8),
-                    rows.min(frame.camera.height - first_row).div_ceil(8),
-                    1,
-                ];
-                if skylight_pass == 0 {
-                    let bound = tracer.bind(&self.gpu, &scene.buffers(&uniform, &picture, &found_light))?;
-                    bands.push((bound, groups));
-                }
                 let bound = self.skylight.bind(&self.gpu, &[&uniform, &found_light, from, to, &picture])?;
                 filters.push((bound, groups));
             }
         }
-        Ok(ScenePass { pipeline: self, tracer, bands, filters, picture })
+        Ok(ScenePass { pipeline: self, bands, filters, picture })
     }
 
-    /// The device.
-    pub(super) fn gpu(&self) -> &Gpu {
-        &self.gpu
+    /// Room for what `rows` rows of pixels have so far, if their samples have dispatches of their own.
+    pub(super) fn states(
+        &self,
+        buffers: &impl BufferSource,
+        camera: &Camera,
+        rows: u32,
+    ) -> Result<Option<wgpu::Buffer>, GpuError> {
+        let bytes = u64::from(camera.width) * u64::from(rows) * TRACE_STATE_BYTES;
+        let storage = wgpu::BufferUsages::STORAGE;
+        self.seen.as_ref().map(|_| buffers.buffer("samples of pixels", bytes, storage)).transpose()
+    }
+
+    /// Prepares the rays of `rows` rows of pixels, which leave what they find in `to`: the picture, and the light that goes to the
+    /// filter. `states`: [`ScenePipeline::states`].
+    pub(super) fn rays(
+        &self,
+        buffers: &impl BufferSource,
+        scene: &SceneOnGpu,
+        frame: &RenderFrame,
+        to: [&wgpu::Buffer; 2],
+        states: Option<&wgpu::Buffer>,
+        rows: u32,
+    ) -> Result<SceneRays<'_>, GpuError> {
+        let tracer = self.tracer(frame)?;
+        let groups = groups(&frame.camera, rows);
+        let Some((seen, states)) = self.seen.as_ref().zip(states) else {
+            let uniform = buffers.uniform("frame", frame)?;
+            let bound =
+                tracer.bind_at(&self.gpu, scene.buffers(&uniform).into_iter().chain((7..).zip(to)))?;
+            return Ok(SceneRays { turns: vec![(tracer, bound)], groups });
+        };
+        let mut turns = Vec::new();
+        for turn in 0..frame.grid * frame.grid {
+            let uniform = buffers.uniform("frame", &RenderFrame { turn, ..*frame })?;
+            let bound = scene.buffers(&uniform).into_iter().chain([(9, states)]);
+            turns.push((tracer, tracer.bind_at(&self.gpu, bound)?));
+        }
+        let uniform = buffers.uniform("frame", frame)?;
+        let bound = [(0, &uniform), (7, to[0]), (8, to[1]), (9, states)];
+        turns.push((seen, seen.bind_at(&self.gpu, bound)?));
+        Ok(SceneRays { turns, groups })
+    }
+}
+
+/// Workgroups for some rows of a picture.
+fn groups(camera: &Camera, rows: u32) -> [u32; 3] {
+    [camera.width.div_ceil(8), rows.div_ceil(8), 1]
+}
+
+/// Rays of some rows of pixels, ready to be traced.
+#[derive(Debug)]
+pub(super) struct SceneRays<'a> {
+    /// One after another.
+    turns: Vec<(&'a ComputeKernel, wgpu::BindGroup)>,
+    groups: [u32; 3],
+}
+
+impl SceneRays<'_> {
+    /// The dispatches, in their order.
+    pub(super) fn dispatches(&self) -> impl Iterator<Item = Dispatch<'_>> {
+        self.turns.iter().map(|(kernel, bound)| kernel.dispatch(bound, self.groups))
     }
 }
 
@@ -188,7 +284,7 @@ impl SceneParts {
 }
 
 /// The kernel that traces scenes: with what they have not, it would be slower for all.
-fn tracer(gpu: &Gpu, parts: SceneParts) -> Result<ComputeKernel, GpuError> {
+fn tracer(gpu: &Gpu, samples: SampleDispatches, parts: SceneParts) -> Result<ComputeKernel, GpuError> {
     let number = |on: bool| if on { 1.0 } else { 0.0 };
     let overrides = [
         ("SCENE_WET", number(parts.has_puddles)),
@@ -196,15 +292,18 @@ fn tracer(gpu: &Gpu, parts: SceneParts) -> Result<ComputeKernel, GpuError> {
         ("WET_SURFACES", number(parts.is_wet)),
         ("SCENE_SHINES", number(parts.shines)),
     ];
-    ComputeKernel::new(gpu, &TRACE_KERNEL, &overrides)
+    let kernel = match samples {
+        SampleDispatches::Together => &TRACE_KERNEL,
+        SampleDispatches::Apart => &TRACE_SAMPLE_KERNEL,
+    };
+    ComputeKernel::new(gpu, kernel, &overrides)
 }
 
 /// A frame of a scene, ready to be drawn.
 #[derive(Debug)]
 pub struct ScenePass<'a> {
     pipeline: &'a ScenePipeline,
-    tracer: &'a ComputeKernel,
-    bands: Vec<(wgpu::BindGroup, [u32; 3])>,
+    bands: Vec<SceneRays<'a>>,
     filters: Vec<(wgpu::BindGroup, [u32; 3])>,
     picture: wgpu::Buffer,
 }
@@ -219,7 +318,7 @@ impl ScenePass<'_> {
     /// Those that trace.
     #[must_use]
     pub fn rays(&self) -> Vec<Dispatch<'_>> {
-        self.bands.iter().map(|(bound, groups)| self.tracer.dispatch(bound, *groups)).collect()
+        self.bands.iter().flat_map(SceneRays::dispatches).collect()
     }
 
     /// Those that filter the light of the sky, after them.
@@ -300,14 +399,10 @@ impl SceneOnGpu {
         [&self.nodes, &self.triangles]
     }
 
-    /// Buffers that the kernel that traces the scene binds, in order.
-    pub(super) fn buffers<'a>(
-        &'a self,
-        frame: &'a wgpu::Buffer,
-        picture: &'a wgpu::Buffer,
-        found_light: &'a wgpu::Buffer,
-    ) -> [&'a wgpu::Buffer; 9] {
+    /// Buffers that a kernel that traces the scene reads, by their bindings.
+    fn buffers<'a>(&'a self, frame: &'a wgpu::Buffer) -> [(u32, &'a wgpu::Buffer); 7] {
         let [nodes, triangles, corners] = [&self.nodes, &self.triangles, &self.corners];
-        [frame, nodes, triangles, corners, &self.table, &self.texels, &self.sky, picture, found_light]
+        let all = [frame, nodes, triangles, corners, &self.table, &self.texels, &self.sky];
+        std::array::from_fn(|binding| (binding as u32, all[binding]))
     }
 }
