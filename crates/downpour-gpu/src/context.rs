@@ -73,6 +73,30 @@ impl Health {
     }
 }
 
+/// Timestamps of a submission.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Timestamps<'a> {
+    pub(crate) queries: &'a wgpu::QuerySet,
+    /// Query that its first pass writes when it begins.
+    pub(crate) begin: Option<u32>,
+    /// Query that its last pass writes when it ends.
+    pub(crate) end: Option<u32>,
+}
+
+impl<'a> Timestamps<'a> {
+    /// Those of one of the passes.
+    fn of_pass(self, is_first: bool, is_last: bool) -> Option<wgpu::ComputePassTimestampWrites<'a>> {
+        let writes = wgpu::ComputePassTimestampWrites {
+            query_set: self.queries,
+            beginning_of_pass_write_index: self.begin.filter(|_| is_first),
+            end_of_pass_write_index: self.end.filter(|_| is_last),
+        };
+        let has_some =
+            writes.beginning_of_pass_write_index.is_some() || writes.end_of_pass_write_index.is_some();
+        has_some.then_some(writes)
+    }
+}
+
 impl Gpu {
     /// Opens a device on the chosen adapter, with the adapter's limits.
     ///
@@ -185,25 +209,28 @@ impl Gpu {
     /// # Errors
     /// As [`Gpu::create`]; [`GpuError::OverLimit`] if a dispatch has more workgroups than the device allows.
     pub fn submit(&self, dispatches: &[Dispatch<'_>]) -> Result<(), GpuError> {
-        self.submit_pass(dispatches, None)?;
+        self.submit_stages(&[dispatches], None)?;
         Ok(())
     }
 
-    /// Submits the dispatches as one pass, which may write timestamps.
-    pub(crate) fn submit_pass(
+    /// Submits stages of dispatches in order as one command buffer, a compute pass for each stage, which may write timestamps at
+    /// the beginning of the first and the end of the last.
+    pub(crate) fn submit_stages(
         &self,
-        dispatches: &[Dispatch<'_>],
-        timestamp_writes: Option<wgpu::ComputePassTimestampWrites<'_>>,
+        stages: &[&[Dispatch<'_>]],
+        timestamps: Option<Timestamps<'_>>,
     ) -> Result<wgpu::SubmissionIndex, GpuError> {
-        for dispatch in dispatches {
+        for dispatch in stages.iter().copied().flatten() {
             dispatch.check(&self.device.limits())?;
         }
         let commands = self.create("a command buffer", 0, |device| {
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            {
+            for (k, dispatches) in stages.iter().enumerate() {
+                let timestamp_writes =
+                    timestamps.and_then(|timestamps| timestamps.of_pass(k == 0, k + 1 == stages.len()));
                 let descriptor = wgpu::ComputePassDescriptor { label: None, timestamp_writes };
                 let mut pass = encoder.begin_compute_pass(&descriptor);
-                for dispatch in dispatches {
+                for dispatch in *dispatches {
                     dispatch.encode_in(&mut pass);
                 }
             }

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use crate::context::Timestamps;
 use crate::{Dispatch, Gpu, GpuError};
 
 /// Submissions after which the host waits, so that what hangs is found: far more than a frame of usual size has.
@@ -89,7 +90,17 @@ impl FramePasses {
     /// # Errors
     /// As [`Gpu::submit`] and [`Gpu::wait`].
     pub fn run(&mut self, name: &'static str, dispatches: &[Dispatch<'_>]) -> Result<(), GpuError> {
-        self.run_parts(name, &[dispatches])
+        self.run_parts(name, &[&[dispatches]])
+    }
+
+    /// Submits a pass in stages: the dispatches of a stage do not wait for one another, where they write different buffers, but for
+    /// all of the stage before. (Between two dispatches of one stage that write the same buffer the later one waits for all before it.)
+    ///
+    /// # Errors
+    /// As [`FramePasses::run`].
+    pub fn run_stages(&mut self, name: &'static str, stages: &[Vec<Dispatch<'_>>]) -> Result<(), GpuError> {
+        let stages: Vec<&[Dispatch<'_>]> = stages.iter().map(Vec::as_slice).collect();
+        self.run_parts(name, &[&stages])
     }
 
     /// Submits a pass, each dispatch by itself: drivers reset a device that is busy with one submission for too long.
@@ -97,16 +108,18 @@ impl FramePasses {
     /// # Errors
     /// As [`FramePasses::run`].
     pub fn run_each(&mut self, name: &'static str, dispatches: &[Dispatch<'_>]) -> Result<(), GpuError> {
-        let parts: Vec<&[Dispatch<'_>]> = dispatches.chunks(1).collect();
+        let stages: Vec<[&[Dispatch<'_>]; 1]> = dispatches.chunks(1).map(|one| [one]).collect();
+        let parts: Vec<&[&[Dispatch<'_>]]> = stages.iter().map(<[_; 1]>::as_slice).collect();
         self.run_parts(name, &parts)
     }
 
-    fn run_parts(&mut self, name: &'static str, parts: &[&[Dispatch<'_>]]) -> Result<(), GpuError> {
+    /// Submits parts of a pass, each in stages.
+    fn run_parts(&mut self, name: &'static str, parts: &[&[&[Dispatch<'_>]]]) -> Result<(), GpuError> {
         let Some(clock) = self.clock.as_mut().filter(|clock| clock.used < clock.most && !parts.is_empty())
         else {
             let begin = Instant::now();
             for part in parts {
-                self.gpu.submit(part)?;
+                self.gpu.submit_stages(part, None)?;
                 self.gpu.wait()?;
             }
             self.note(name, begin.elapsed().as_secs_f64() * 1.0e3);
@@ -116,12 +129,12 @@ impl FramePasses {
         clock.used += 1;
         for (k, part) in parts.iter().enumerate() {
             let (is_first, is_last) = (k == 0, k + 1 == parts.len());
-            let writes = (is_first || is_last).then_some(wgpu::ComputePassTimestampWrites {
-                query_set: &clock.queries,
-                beginning_of_pass_write_index: is_first.then_some(2 * used),
-                end_of_pass_write_index: is_last.then_some(2 * used + 1),
-            });
-            self.gpu.submit_pass(part, writes)?;
+            let timestamps = Timestamps {
+                queries: &clock.queries,
+                begin: is_first.then_some(2 * used),
+                end: is_last.then_some(2 * used + 1),
+            };
+            self.gpu.submit_stages(part, Some(timestamps))?;
             if k % WAIT_EVERY == WAIT_EVERY - 1 {
                 self.gpu.wait()?;
             }

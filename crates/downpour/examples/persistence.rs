@@ -201,10 +201,11 @@ impl Bench<'_> {
         let plate = self.scenes.plate(self.gpu, &self.scene, &self.frame, &self.rains, &rain)?;
         let pass = self.rains.prepare(self.gpu, &plate.of(&self.clean), uploaded, &rain, &lights)?;
         let capture = time(self.gpu, &plate.dispatches(&pass))?;
+        let lists = time(self.gpu, &pass.binning().concat())?;
         let lamps = time(self.gpu, &pass.lamps())?;
         let streaks: Vec<Dispatch<'_>> = pass.streaks();
         let table = if streaks.is_empty() { 0.0 } else { time(self.gpu, &streaks)? };
-        let drops = time(self.gpu, &pass.drops())?;
+        let drops = lists + time(self.gpu, &[pass.drops()])?;
         Ok(Cost { binning, capture, table, lamps, drops, layer: pass.layer()? })
     }
 

@@ -247,20 +247,16 @@ impl Rain {
             FallingOnGpu { drops: found.drops(), count: found.places(), frequencies: &self.frequencies };
         let masks = (&self.masks_on_gpu, &self.masks);
         let pass = self.rains.prepare_falling(pool, &plate, masks, (&rain, &options), &lights, falling)?;
-        let mut dispatches = made.dispatches();
-        dispatches.extend(found.dispatches());
-        dispatches.extend(pass.project());
-        dispatches.extend(pass.environment());
-        dispatches.extend(pass.lamps());
-        dispatches.extend(pass.streaks());
-        dispatches.extend(pass.medium());
-        dispatches.extend(pass.drops());
-        {
+        let mut stages = vec![[made.dispatches(), pass.environment()].concat()];
+        stages.extend(found.stages());
+        stages.extend(pass.binning());
+        stages.push([pass.lamps(), pass.streaks(), pass.medium().to_vec(), vec![pass.drops()]].concat());
+        for stage in &stages {
             let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: Some("rain"),
                 ..Default::default()
             });
-            for dispatch in &dispatches {
+            for dispatch in stage {
                 dispatch.encode(&self.gpu, &mut compute)?;
             }
         }

@@ -38,6 +38,8 @@ shared_constants! {
         MEDIUM_SPOTS: u32 = 2;
         /// Slices of distance of the grid of open air: two entries of the table each.
         MEDIUM_SLICES: u32 = 16;
+        /// Cells of that grid in a workgroup, with a row of `MEDIUM_SLICES` invocations each.
+        MEDIUM_CELLS: u32 = 4;
         /// Columns of that grid.
         MEDIUM_COLUMNS: u32 = 48;
         /// The sky is as it is seen through the rain beyond this distance, m.
@@ -90,9 +92,9 @@ pub static MEDIUM_FILTER: Module = Module {
     uses: &[&MEDIUM_CONSTANTS, &MEDIUM, &LIGHT, &SCENE],
 };
 
-/// One invocation per cell of the grid.
+/// One invocation per cell and slice of the grid.
 pub static MEDIUM_OPEN_KERNEL: Kernel =
-    Kernel { entry: "main_medium_open", module: &MEDIUM_OPEN, workgroup: [64, 1, 1] };
+    Kernel { entry: "main_medium_open", module: &MEDIUM_OPEN, workgroup: [MEDIUM_SLICES, MEDIUM_CELLS, 1] };
 
 /// One invocation per pixel.
 pub static MEDIUM_LIGHT_KERNEL: Kernel =

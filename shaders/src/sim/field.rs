@@ -25,6 +25,8 @@ pub const KERNELS: &[&Kernel] =
 shared_constants! {
     /// Constants of the closed form.
     FIELD_CONSTANTS at "sim/field_constants" {
+        /// Invocations that share the chains of a column.
+        FIELD_LANES: u32 = 8;
         /// Dimension of the random numbers of a column's number of chains.
         FIELD_CHAIN_COUNT: u32 = 8200;
         /// Dimension of those of a chain.
@@ -120,7 +122,7 @@ pub static SHELTER_AMONG_HOLES: Module =
 pub static FIELD_CLEAR_KERNEL: Kernel =
     Kernel { entry: "main_field_clear", module: &FIELD, workgroup: [64, 1, 1] };
 
-/// One invocation per column.
+/// `FIELD_LANES` invocations per column.
 pub static FIELD_FIND_KERNEL: Kernel =
     Kernel { entry: "main_field_find", module: &FIELD, workgroup: [64, 1, 1] };
 

@@ -26,44 +26,18 @@ fn medium_open_ray(column: u32, row: u32) -> vec3f {
     return camera_direction(render_frame.camera, x, y);
 }
 
-// Fills the column of a cell.
-fn medium_open_column(column: u32, row: u32) {
-    let direction = medium_open_ray(column, row);
-    let span = medium_span(direction);
-    let outline = medium_outline(direction);
-    let cell = row * medium_frame.columns + column;
-    let word = rng_draw(vec2u(render_frame.camera.seed, 0u), cell, 0u, MEDIUM_RANDOM_DIMENSION);
-    var begin = 0.0;
-    var depth = 0.0;
-    var before = 0.0;
-    // The first turn meets the surface before the cell; the others ask what is above the air before it. One text for all of them:
-    // each copy of the walk is compiled again.
-    var solid = MEDIUM_FAR;
-    for (var turn = 0u; turn <= MEDIUM_SLICES; turn += 1u) {
-        let slice = max(turn, 1u) - 1u;
-        let end = medium_open_end(slice);
-        var open = 1.0;
-        if medium_frame.open == 0u {
-            let part = fract(rng_unit(word.x) + 0.618034 * f32(slice));
-            let before_solid = select(end, min(end, solid), begin < solid);
-            let above = medium_frame.eye + direction * (begin + (before_solid - begin) * part);
-            let start = select(above, medium_frame.eye, turn == 0u);
-            let along = select(medium_frame.rise, direction, turn == 0u);
-            let met = surface_walk(start, along, render_frame.nearest, BVH_FAR, turn > 0u).distance;
-            open = select(0.0, 1.0, met < 0.0);
-            if turn == 0u && met >= 0.0 {
-                solid = met;
-            }
-        }
-        if turn == 0u {
-            continue;
-        }
-        let whole = medium_depth(end, span, outline);
-        depth += (whole - before) * open;
-        medium_out[cell * MEDIUM_SLICES + slice] = vec4f(depth, open, 0.0, 0.0);
-        before = whole;
-        begin = end;
-    }
+// Distance at which a slice begins, m.
+fn medium_open_begin(slice: u32) -> f32 {
+    return select(medium_open_end(max(slice, 1u) - 1u), 0.0, slice == 0u);
+}
+
+// Distance along the ray of a cell at which the slice asks for what is above it, where a surface is at the distance `solid`.
+fn medium_open_asks(word: u32, slice: u32, solid: f32) -> f32 {
+    let part = fract(rng_unit(word) + 0.618034 * f32(slice));
+    let begin = medium_open_begin(slice);
+    let end = medium_open_end(slice);
+    let before_solid = select(end, min(end, solid), begin < solid);
+    return begin + (before_solid - begin) * part;
 }
 
 // Optical depth along the ray of a cell up to a part of a slice, and 1 if the slice is open.
@@ -90,7 +64,7 @@ fn medium_open_at(x: f32, y: f32, distance: f32) -> vec2f {
     let slice = medium_open_slice(distance);
     var begin = 0.0;
     if slice > 0u {
-        begin = medium_depth(medium_open_end(slice - 1u), span, outline);
+        begin = medium_depth(medium_open_begin(slice), span, outline);
     }
     let end = medium_depth(medium_open_end(slice), span, outline);
     // Beyond the last slice, its density continues.
@@ -111,9 +85,54 @@ fn medium_open_at(x: f32, y: f32, distance: f32) -> vec2f {
     return sum;
 }
 
-@compute @workgroup_size(64, 1, 1)
-fn main_medium_open(@builtin(global_invocation_id) id: vec3u) {
-    if id.x < medium_frame.columns * medium_frame.rows {
-        medium_open_column(id.x % medium_frame.columns, id.x / medium_frame.columns);
+// Of the cells of a workgroup: distance of the surface before each, and optical depth of each slice.
+var<workgroup> medium_open_solid: array<f32, MEDIUM_CELLS>;
+var<workgroup> medium_open_parts: array<array<f32, MEDIUM_SLICES>, MEDIUM_CELLS>;
+
+@compute @workgroup_size(16, 4, 1)
+fn main_medium_open(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_id) local: vec3u,
+) {
+    let slice = local.x;
+    let cell = (group.y * groups.x + group.x) * MEDIUM_CELLS + local.y;
+    let is_cell = cell < medium_frame.columns * medium_frame.rows;
+    let direction = medium_open_ray(cell % medium_frame.columns, cell / medium_frame.columns);
+    let word = rng_draw(vec2u(render_frame.camera.seed, 0u), cell, 0u, MEDIUM_RANDOM_DIMENSION).x;
+    var open = 1.0;
+    if medium_frame.open == 0u {
+        // First one invocation of a cell meets the surface before it; then each asks what is above the air before that. One text for
+        // both: each copy of the walk is compiled again.
+        for (var turn = 0u; turn < 2u; turn += 1u) {
+            if is_cell && (turn == 1u || slice == 0u) {
+                let asks = medium_open_asks(word, slice, medium_open_solid[local.y]);
+                let start = medium_frame.eye + direction * select(asks, 0.0, turn == 0u);
+                let along = select(medium_frame.rise, direction, turn == 0u);
+                let met = surface_walk(start, along, render_frame.nearest, BVH_FAR, turn > 0u).distance;
+                if turn == 0u {
+                    medium_open_solid[local.y] = select(MEDIUM_FAR, met, met >= 0.0);
+                } else {
+                    open = select(0.0, 1.0, met < 0.0);
+                }
+            }
+            workgroupBarrier();
+        }
     }
+    let span = medium_span(direction);
+    let outline = medium_outline(direction);
+    var before = 0.0;
+    if slice > 0u {
+        before = medium_depth(medium_open_begin(slice), span, outline);
+    }
+    medium_open_parts[local.y][slice] = (medium_depth(medium_open_end(slice), span, outline) - before) * open;
+    workgroupBarrier();
+    if !is_cell {
+        return;
+    }
+    var depth = 0.0;
+    for (var k = 0u; k <= slice; k += 1u) {
+        depth += medium_open_parts[local.y][k];
+    }
+    medium_out[cell * MEDIUM_SLICES + slice] = vec4f(depth, open, 0.0, 0.0);
 }

@@ -1,6 +1,7 @@
 // Drops of a rain in closed form that a picture can resolve.
 // Method: diameters are divided into classes, a class has square columns, a column holds chains, and the drops of a chain follow each
-// other at the period of the class (downpour_sim::field). Each column that the picture may show is one invocation.
+// other at the period of the class (downpour_sim::field). FIELD_LANES invocations share the chains
+// of a column that the picture may show.
 // What decides which drops there are is done in integers, the same on every device: the number of chains (a Poisson number, by
 // cumulative probabilities of 64 bits), the diameter (in units of 2^-30 m) and the rate of fall (in units of 2^-29 periods per
 // second) of a chain, and how far it has fallen (whole periods, and a fraction of 32 bits), at any time; and, of a rain whose rate
@@ -16,7 +17,7 @@ struct FieldClass {
     first_node: u32,
     first_threshold: u32,
     portions: u32,
-    // First invocation of its columns.
+    // Number of its first column.
     first_column: u32,
     // First column along x and z, and number of them.
     columns: vec2i,
@@ -377,7 +378,8 @@ fn main_field_clear(@builtin(global_invocation_id) id: vec3u, @builtin(num_workg
 
 @compute @workgroup_size(64, 1, 1)
 fn main_field_find(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    let index = invocation_index(id, groups);
+    let invocation = invocation_index(id, groups);
+    let index = invocation / FIELD_LANES;
     if index >= field_frame.columns {
         return;
     }
@@ -386,7 +388,7 @@ fn main_field_find(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgr
         return;
     }
     let count = field_count(column.key, column.kind.first_threshold, column.kind.portions);
-    for (var chain = 0u; chain < count; chain += 1u) {
+    for (var chain = invocation % FIELD_LANES; chain < count; chain += FIELD_LANES) {
         field_list(column, field_chain(column, chain));
     }
 }

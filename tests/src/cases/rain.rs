@@ -323,6 +323,7 @@ fn masks_case(
     };
     let found = || kept(&format!("{key} found"), || rain.medium_light(lights).found(clean));
     gpu.submit(&plate.dispatches(&pass))?;
+    gpu.submit(&pass.binning().concat())?;
     match part {
         Part::Capture | Part::CaptureBySamples => {
             // The finest level: the others are the kernel of the reduction.
@@ -337,15 +338,8 @@ fn masks_case(
             Ok(run(STREAK_RAYS, &of_part(&table().entries), &of_part(&pass.streak_table()?)))
         }
         Part::Drops => {
-            gpu.submit(
-                &pass
-                    .lamps()
-                    .into_iter()
-                    .chain(pass.streaks())
-                    .chain(pass.medium())
-                    .chain(pass.drops())
-                    .collect::<Vec<_>>(),
-            )?;
+            let drawn = [pass.lamps(), pass.streaks(), pass.medium().to_vec(), vec![pass.drops()]];
+            gpu.submit(&drawn.concat())?;
             let layer = kept(&format!("{key} layer"), || {
                 let medium = rain.medium_light(lights).layer(clean);
                 rain.layer(clean, masks, capture, &table(), &lights.light(&rain.rows), &medium)
@@ -353,7 +347,6 @@ fn masks_case(
             Ok(run(SIZE[0], &layer, &pass.layer()?))
         }
         Part::Open => {
-            gpu.submit(&pass.medium())?;
             let cells = found().len() - 2 * clean.len();
             Ok(run(16, &found()[..cells], &pass.medium_found()?[..cells]))
         }

@@ -1,7 +1,9 @@
 //! Unresolved rain on a GPU: what [`MediumLight::layer`] makes on the CPU.
 
-use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
-use downpour_shaders::render::medium::{MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL};
+use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu, workgroups};
+use downpour_shaders::render::medium::{
+    MEDIUM_CELLS, MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL,
+};
 
 use super::plate::PlateOnGpu;
 use crate::rain::medium::MediumLight;
@@ -19,7 +21,7 @@ pub struct MediumPipeline {
 #[derive(Debug)]
 pub struct MediumPass<'a> {
     pipeline: &'a MediumPipeline,
-    open: (wgpu::BindGroup, u32),
+    open: (wgpu::BindGroup, [u32; 3]),
     light: wgpu::BindGroup,
     filter: wgpu::BindGroup,
     groups: [u32; 3],
@@ -70,7 +72,7 @@ impl MediumPipeline {
         let cells = medium.medium.columns * medium.medium.rows;
         Ok(MediumPass {
             pipeline: self,
-            open: (open, cells.div_ceil(64)),
+            open: (open, workgroups(cells.div_ceil(MEDIUM_CELLS))),
             light,
             filter,
             groups: [width.div_ceil(8), height.div_ceil(8), 1],
@@ -81,12 +83,16 @@ impl MediumPipeline {
 }
 
 impl MediumPass<'_> {
-    /// The dispatches, in this order.
+    /// The grid of the air that is open to the rain.
     #[must_use]
-    pub fn dispatches(&self) -> [Dispatch<'_>; 3] {
-        let (open, cells) = &self.open;
+    pub fn open(&self) -> Dispatch<'_> {
+        self.pipeline.open.dispatch(&self.open.0, self.open.1)
+    }
+
+    /// The dispatches after that, in this order.
+    #[must_use]
+    pub fn dispatches(&self) -> [Dispatch<'_>; 2] {
         [
-            self.pipeline.open.dispatch(open, [*cells, 1, 1]),
             self.pipeline.light.dispatch(&self.light, self.groups),
             self.pipeline.filter.dispatch(&self.filter, self.groups),
         ]

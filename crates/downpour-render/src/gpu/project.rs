@@ -180,11 +180,11 @@ impl ProjectPipeline {
 }
 
 impl ProjectPass<'_> {
-    /// The dispatches, in this order.
-    #[must_use]
-    pub fn dispatches(&self) -> Vec<Dispatch<'_>> {
+    /// The kernel that puts drops on the picture, and those of the profiles in their order. The first of these clears, and needs not
+    /// wait for it.
+    pub(super) fn dispatches(&self) -> (Dispatch<'_>, Vec<Dispatch<'_>>) {
         let first = self.pipeline.project.dispatch(&self.project.0, self.project.1);
-        std::iter::once(first).chain(self.profiles.dispatches()).collect()
+        (first, self.profiles.dispatches())
     }
 }
 
@@ -229,8 +229,11 @@ impl ProjectPipeline {
             downpour_shaders::render::rain::PROJECT_NO_CLASS,
         );
         let (pass, made, streaks) = self.prepare(gpu, falling, &tables, frames, &classes)?;
-        gpu.submit(&pass.dispatches())?;
-        gpu.submit(&pass.dispatches())?;
+        let (first, profiles) = pass.dispatches();
+        for _ in 0..2 {
+            gpu.submit(&[first])?;
+            gpu.submit(&profiles)?;
+        }
         Ok(ProjectFound {
             list: gpu.read(&made.list)?,
             rows: gpu.read(&made.rows)?,

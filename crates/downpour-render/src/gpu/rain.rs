@@ -286,7 +286,7 @@ impl RainPass<'_> {
             .collect()
     }
 
-    /// Finds which drops the plate does not hide: after [`RainPass::project`].
+    /// Finds which drops the plate does not hide: after [`RainPass::binning`].
     #[must_use]
     pub fn seen(&self) -> Dispatch<'_> {
         self.tiles.seen()
@@ -305,27 +305,43 @@ impl RainPass<'_> {
         self.lamps.iter().flat_map(DropLightPass::dispatches).collect()
     }
 
-    /// The drops that are put on the picture, before all that draws them; nothing where that was done on the CPU.
+    /// What is done before anything is lit or drawn, in stages whose dispatches write different buffers: drops that are on the device
+    /// are put on the picture, streaks get their profiles, the tiles their lists, the air its grid of what is open, and the drops that
+    /// are too small for a profile the light of their classes. After [`RainPass::environment`].
     #[must_use]
-    pub fn project(&self) -> Vec<Dispatch<'_>> {
-        self.project.as_ref().map(ProjectPass::dispatches).unwrap_or_default()
+    pub fn binning(&self) -> Vec<Vec<Dispatch<'_>>> {
+        let (means, classes) = &self.means;
+        let means = self.pipeline.means.dispatch(means, [STREAK_RAYS * STREAK_RAYS, *classes, 1]);
+        let mut stages: Vec<Vec<Dispatch<'_>>> =
+            self.tiles.dispatches().into_iter().map(|of_tiles| vec![of_tiles]).collect();
+        stages[0].push(self.medium.open());
+        let mut after = 0;
+        if let Some(project) = &self.project {
+            let (first, profiles) = project.dispatches();
+            stages[0].push(first);
+            after = profiles.len();
+            for (stage, of_profiles) in stages.iter_mut().zip(profiles) {
+                stage.push(of_profiles);
+            }
+        }
+        // Which classes there are is known after the profiles.
+        stages[after].push(means);
+        stages
     }
 
-    /// The streak radiance table, after the environment map and the lamps.
+    /// The profiles of streaks in the streak radiance table, after the lamps.
     #[must_use]
     pub fn streaks(&self) -> Vec<Dispatch<'_>> {
-        let (means, classes) = &self.means;
         let pipeline = self.pipeline;
-        let means = pipeline.means.dispatch(means, [STREAK_RAYS * STREAK_RAYS, *classes, 1]);
         let [rays, light] = &self.profiles;
         let rays = self.groups.dispatch(0, &pipeline.rays, rays);
         let light = self.groups.dispatch(1, &pipeline.light, light);
-        std::iter::once(means).chain(rays).chain(light).collect()
+        rays.into_iter().chain(light).collect()
     }
 
     /// The drops that are not drawn one by one, in this order; before [`RainPass::drops`].
     #[must_use]
-    pub fn medium(&self) -> [Dispatch<'_>; 3] {
+    pub fn medium(&self) -> [Dispatch<'_>; 2] {
         self.medium.dispatches()
     }
 
@@ -337,13 +353,11 @@ impl RainPass<'_> {
         self.medium.found()
     }
 
-    /// The drops: the lists of the tiles, and then what their pixels show, in this order.
+    /// What the pixels show of the drops, after all else.
     #[must_use]
-    pub fn drops(&self) -> Vec<Dispatch<'_>> {
-        let mut all = self.tiles.dispatches();
+    pub fn drops(&self) -> Dispatch<'_> {
         let groups = [self.size[0].div_ceil(8), self.size[1].div_ceil(8), 1];
-        all.push(self.pipeline.drops.dispatch(&self.drops, groups));
-        all
+        self.pipeline.drops.dispatch(&self.drops, groups)
     }
 
     /// The rain on the device, as [`RainPass::layer`] reads it.

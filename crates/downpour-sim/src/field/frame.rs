@@ -29,7 +29,7 @@ pub struct FieldClass {
     pub first_threshold: u32,
     /// Whole portions of the number of chains.
     pub portions: u32,
-    /// First invocation of its columns.
+    /// Number of its first column.
     pub first_column: u32,
     /// First column along x and z.
     pub columns: [i32; 2],

@@ -10,7 +10,7 @@ use downpour_shaders::sim::bounce::{
     BOUNCE_LIST_KERNEL, BOUNCE_SLICE,
 };
 use downpour_shaders::sim::field::{
-    FIELD_CLEAR_KERNEL, FIELD_FIND_KERNEL, SHELTER_AMONG_HOLES_KERNEL, SHELTER_KERNEL,
+    FIELD_CLEAR_KERNEL, FIELD_FIND_KERNEL, FIELD_LANES, SHELTER_AMONG_HOLES_KERNEL, SHELTER_KERNEL,
 };
 use downpour_shaders::sim::splash::SPLASH_KERNEL;
 use downpour_wind::UniformWind;
@@ -146,7 +146,7 @@ pub struct FieldPass<'a> {
     pipeline: &'a FieldPipeline,
     search: Search<'a>,
     splashes: Vec<(Search<'a>, wgpu::BindGroup, [u32; 3])>,
-    /// Of the search for droplets.
+    /// Of the search for droplets: a kernel for each stage, or none.
     bounces: Vec<BoundKernel<'a>>,
     drops: wgpu::Buffer,
     found: wgpu::Buffer,
@@ -306,7 +306,10 @@ impl FieldPipeline {
             let drift = buffers.storage("drift of drops", &query.drift)?;
             let (nodes, thresholds) = (&on.nodes, &on.thresholds);
             let bound = [&uniform, &classes, nodes, thresholds, &drift, drops, found, &on.begins, &on.parts];
-            find = Some((self.find.bind(gpu, &bound)?, workgroups_for(query.frame.columns)));
+            find = Some((
+                self.find.bind(gpu, &bound)?,
+                workgroups_for(query.frame.columns.saturating_mul(FIELD_LANES)),
+            ));
         }
         let mut shelter = None;
         if let Some(bounds) = obstacles.bounds {
@@ -461,28 +464,41 @@ impl FieldOnGpu {
 }
 
 impl Search<'_> {
-    /// The dispatches, in this order.
-    fn dispatches<'a>(&'a self, pipeline: &'a FieldPipeline) -> Vec<Dispatch<'a>> {
-        let mut all = vec![pipeline.clear.dispatch(&self.clear.0, self.clear.1)];
-        all.extend(self.find.as_ref().map(|(bindings, groups)| pipeline.find.dispatch(bindings, *groups)));
-        all.extend(
-            self.shelter.as_ref().map(|(kernel, bindings, groups)| kernel.dispatch(bindings, *groups)),
-        );
-        all
+    /// Its dispatches, one after another: clear, find, ask for obstacles.
+    fn stages<'a>(&'a self, pipeline: &'a FieldPipeline) -> [Option<Dispatch<'a>>; 3] {
+        let (clear, find, shelter) = (&self.clear, self.find.as_ref(), self.shelter.as_ref());
+        [
+            Some(pipeline.clear.dispatch(&clear.0, clear.1)),
+            find.map(|(bindings, groups)| pipeline.find.dispatch(bindings, *groups)),
+            shelter.map(|(kernel, bindings, groups)| kernel.dispatch(bindings, *groups)),
+        ]
     }
 }
 
 impl FieldPass<'_> {
+    /// The dispatches in stages, one after another: those of a stage write different buffers, but for those of the last, which add
+    /// splashes and droplets to the list.
+    #[must_use]
+    pub fn stages(&self) -> [Vec<Dispatch<'_>>; 4] {
+        let mut stages: [Vec<Dispatch<'_>>; 4] = Default::default();
+        for search in std::iter::once(&self.search).chain(self.splashes.iter().map(|(search, ..)| search)) {
+            for (stage, dispatch) in stages.iter_mut().zip(search.stages(self.pipeline)) {
+                stage.extend(dispatch);
+            }
+        }
+        let crowns = self.splashes.iter();
+        stages[3]
+            .extend(crowns.map(|(_, bindings, groups)| self.pipeline.splash.dispatch(bindings, *groups)));
+        for (stage, (kernel, bindings, groups)) in stages.iter_mut().zip(&self.bounces) {
+            stage.push(kernel.dispatch(bindings, *groups));
+        }
+        stages
+    }
+
     /// The dispatches, in this order.
     #[must_use]
     pub fn dispatches(&self) -> Vec<Dispatch<'_>> {
-        let mut all = self.search.dispatches(self.pipeline);
-        for (search, bindings, groups) in &self.splashes {
-            all.extend(search.dispatches(self.pipeline));
-            all.push(self.pipeline.splash.dispatch(bindings, *groups));
-        }
-        all.extend(self.bounces.iter().map(|(kernel, bindings, groups)| kernel.dispatch(bindings, *groups)));
-        all
+        self.stages().concat()
     }
 
     /// The drops on the device ([`EyeDrop`]): those that were known, and then the others in any order, with empty places between

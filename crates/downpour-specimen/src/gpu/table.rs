@@ -48,7 +48,8 @@ impl SpecimenTableRenderer {
             let plate = self.scenes.plate(&self.gpu, &scene, &streak.frame, &self.rains, &streak.rain)?;
             let pass = self.rains.prepare(&self.gpu, &plate.of(&clean), &masks, &streak.rain, &lights)?;
             let environment = plate.dispatches(&pass);
-            for dispatches in [environment, pass.lamps(), pass.streaks(), pass.drops()] {
+            let binning = pass.binning().concat();
+            for dispatches in [environment, binning, pass.lamps(), pass.streaks(), vec![pass.drops()]] {
                 self.gpu.submit(&dispatches)?;
                 // One submission at a time: software drivers queue without end.
                 self.gpu.wait()?;

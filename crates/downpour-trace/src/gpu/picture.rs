@@ -280,15 +280,13 @@ impl PictureRenderer {
             passes.run("capture", &captured)?;
         }
         if let Some(search) = &search {
-            passes.run("search", &search.dispatches())?;
+            passes.run_stages("search", &search.stages())?;
         }
-        passes.run("projection", &pass.project())?;
+        passes.run_stages("binning", &pass.binning())?;
         passes.run("lamps", &pass.lamps())?;
         passes.run("streaks", &pass.streaks())?;
         passes.run_each("unresolved", &pass.medium())?;
-        let mut drawn = pass.drops();
-        drawn.push(pass.seen());
-        passes.run("drops", &drawn)?;
+        passes.run("drops", &[pass.drops(), pass.seen()])?;
         let layer = pass.layer_buffer().clone();
         let environment = plate.of(&clean).environment.clone();
         let distances = pass.distances().0.clone();

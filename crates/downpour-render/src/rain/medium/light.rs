@@ -139,11 +139,8 @@ impl<'a> MediumLight<'a> {
     #[must_use]
     pub fn found(&self, clean: &[[f32; 4]]) -> Vec<[f32; 4]> {
         let cells = self.medium.columns * self.medium.rows;
-        let columns = self.medium.columns;
-        let mut rows: Vec<[f32; 4]> = (0..cells)
-            .into_par_iter()
-            .flat_map_iter(|cell| self.medium_open_column(cell % columns, cell / columns))
-            .collect();
+        let mut rows: Vec<[f32; 4]> =
+            (0..cells).into_par_iter().flat_map_iter(|cell| self.slices_of(cell)).collect();
         let [width, height] = self.camera.size();
         let grid = &rows;
         let pixels: Vec<[f32; 4]> = (0..height)

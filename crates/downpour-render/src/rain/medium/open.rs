@@ -13,6 +13,20 @@ pub(super) fn medium_open_end(slice: u32) -> f32 {
     medium_node(2 * slice + 1)
 }
 
+/// Distance at which a slice begins, m.
+fn medium_open_begin(slice: u32) -> f32 {
+    if slice == 0 { 0.0 } else { medium_open_end(slice - 1) }
+}
+
+/// Distance along the ray of a cell at which the slice asks for what is above it, where a surface is at the distance `solid`.
+fn medium_open_asks(word: u32, slice: u32, solid: f32) -> f32 {
+    let part = rng_unit(word) + 0.618_034 * slice as f32;
+    let part = part - part.floor();
+    let [begin, end] = [medium_open_begin(slice), medium_open_end(slice)];
+    let before_solid = if begin < solid { end.min(solid) } else { end };
+    begin + (before_solid - begin) * part
+}
+
 /// The slice of a distance.
 pub(super) fn medium_open_slice(distance: f32) -> u32 {
     let position = 0.5 * (3.0 * ops::log2((distance / MEDIUM_NEAR).max(1.0)) + 1.0);
@@ -28,33 +42,26 @@ impl MediumLight<'_> {
         self.camera.camera_direction(x, y)
     }
 
-    /// The column of a cell.
-    pub(super) fn medium_open_column(&self, column: u32, row: u32) -> [[f32; 4]; MEDIUM_SLICES as usize] {
-        let (medium, camera) = (&self.medium, self.camera);
-        let direction = self.medium_open_ray(column, row);
+    /// The slices of a cell.
+    pub(super) fn slices_of(&self, cell: u32) -> [[f32; 4]; MEDIUM_SLICES as usize] {
+        let medium = &self.medium;
+        let direction = self.medium_open_ray(cell % medium.columns, cell / medium.columns);
         let span = medium.medium_span(direction);
         let outline = medium.medium_outline(direction);
-        let cell = row * medium.columns + column;
-        let [word, ..] = rng_draw([camera.seed, 0], cell, 0, MEDIUM_RANDOM_DIMENSION);
+        let [word, ..] = rng_draw([self.camera.seed, 0], cell, 0, MEDIUM_RANDOM_DIMENSION);
         let hit = |start: Vec3, along: Vec3| self.lighting.obstacle(start, along);
         let eye = Vec3::from(medium.eye);
         // Distance of the obstacle before the cell; the other rays look for obstacles above the air before it.
         let solid = if medium.open == 0 { hit(eye, direction) } else { None }.unwrap_or(MEDIUM_FAR);
-        let (mut begin, mut depth, mut before) = (0.0, 0.0, 0.0);
+        let mut depth = 0.0;
         std::array::from_fn(|slice| {
-            let end = medium_open_end(slice as u32);
-            let mut open = 1.0;
-            if medium.open == 0 {
-                let part = rng_unit(word) + 0.618_034 * slice as f32;
-                let part = part - part.floor();
-                let before_solid = if begin < solid { end.min(solid) } else { end };
-                let above = eye + direction * (begin + (before_solid - begin) * part);
-                open = if hit(above, medium.rise.into()).is_none() { 1.0 } else { 0.0 };
-            }
-            let whole = medium.medium_depth(end, span, outline);
-            depth += (whole - before) * open;
-            before = whole;
-            begin = end;
+            let slice = slice as u32;
+            let above = || eye + direction * medium_open_asks(word, slice, solid);
+            let is_open = medium.open == 1 || hit(above(), medium.rise.into()).is_none();
+            let open = if is_open { 1.0 } else { 0.0 };
+            let depth_to = |distance| medium.medium_depth(distance, span, outline);
+            let before = if slice > 0 { depth_to(medium_open_begin(slice)) } else { 0.0 };
+            depth += (depth_to(medium_open_end(slice)) - before) * open;
             [depth, open, 0.0, 0.0]
         })
     }
@@ -81,7 +88,7 @@ impl MediumLight<'_> {
         let slice = medium_open_slice(distance);
         let mut begin = 0.0;
         if slice > 0 {
-            begin = medium.medium_depth(medium_open_end(slice - 1), span, outline);
+            begin = medium.medium_depth(medium_open_begin(slice), span, outline);
         }
         let end = medium.medium_depth(medium_open_end(slice), span, outline);
         // Beyond the last slice, its density continues.
