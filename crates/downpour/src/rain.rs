@@ -4,6 +4,7 @@ mod error;
 mod settings;
 mod textures;
 
+use downpour_drop::air::Air;
 use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution};
 use downpour_drop::oscillation::{Amplitudes, Fluids};
 use downpour_gpu::{BufferPool, Gpu, wgpu};
@@ -16,8 +17,10 @@ use downpour_render::rain::{
 };
 use downpour_sim::field::{RainField, VisibleDrops};
 use downpour_sim::gpu::{FieldOnGpu, FieldPipeline, FieldSearch, ObstaclesOnGpu};
+use downpour_sim::impacts::SplashOptions;
 use downpour_sim::resolved::Resolved;
 use downpour_sim::shelter::Obstacles;
+use downpour_sim::simulation::Bounce;
 use downpour_sim::view::View;
 use downpour_trace::builder::{MeshPart, SceneBuilder};
 use downpour_trace::data::{RenderFrame, SceneData};
@@ -27,7 +30,7 @@ use downpour_trace::scene::SceneView;
 use downpour_trace::sky_light::SkyLight;
 use glam::{Affine3A, DVec3, Vec3};
 
-use crate::shower::fall_speed;
+use crate::shower::{fall_speed, splashes};
 
 pub use downpour_render::host::DepthRange;
 pub use error::RainError;
@@ -62,6 +65,10 @@ pub struct RainStats {
     pub buffers_made: u64,
     /// Bytes that were written to the device for this frame.
     pub bytes_uploaded: u64,
+    /// True if the frame has splashes; false without obstacles, or where more drops hit them than the device looks for.
+    pub has_splashes: bool,
+    /// True if the frame has droplets that rebounded; false as for splashes.
+    pub has_droplets: bool,
 }
 
 /// Rain for a host application, drawn on the host's device.
@@ -92,6 +99,11 @@ pub struct Rain {
     frequencies: wgpu::Buffer,
     masks: DropMasks,
     masks_on_gpu: RainOnGpu,
+    /// Air that the masks are of.
+    masks_air: Air,
+    /// Splashes, if drops splash.
+    splashes: Option<SplashOptions>,
+    has_obstacles: bool,
     /// Obstacles and lamps.
     scene: SceneData,
     scene_on_gpu: SceneOnGpu,
@@ -112,8 +124,9 @@ impl Rain {
         settings: RainSettings,
     ) -> Result<Self, RainError> {
         let gpu = Gpu::on_device(device.clone(), queue.clone());
+        let Falling { sizes, field, splashes } = Falling::of(&settings)?;
         let masks = DropMasks::in_air(&settings.air)?;
-        let (sizes, field) = falling(&settings)?;
+        let masks = if splashes.is_some() { masks.with_splashes_in_air(&settings.air)? } else { masks };
         let rains = RainPipeline::new(&gpu)?;
         let fields = FieldPipeline::new(&gpu)?;
         let scene = scene_of(&[])?;
@@ -129,10 +142,13 @@ impl Rain {
             host: HostPipeline::new(&gpu)?,
             pool: BufferPool::new(&gpu),
             gpu,
+            masks_air: settings.air,
             settings,
             sizes,
             field,
             masks,
+            splashes,
+            has_obstacles: false,
             scene,
             rains,
         })
@@ -149,11 +165,16 @@ impl Rain {
     /// # Errors
     /// [`RainError`] for a setting outside its range; the old settings stay.
     pub fn set_settings(&mut self, settings: RainSettings) -> Result<(), RainError> {
-        let (sizes, field) = falling(&settings)?;
+        let Falling { sizes, field, splashes } = Falling::of(&settings)?;
+        if splashes.is_some() && !self.masks.has_splashes() {
+            let masks = self.masks.clone().with_splashes_in_air(&self.masks_air)?;
+            self.masks_on_gpu = self.rains.upload(&masks)?;
+            self.masks = masks;
+        }
         self.field_on_gpu = self.fields.upload(&field)?;
         self.frequencies = self.rains.frequencies(&Fluids::in_air(&settings.air))?;
         (self.fall_speed, self.medium) = (fall_speed(&sizes), None);
-        (self.sizes, self.field, self.settings) = (sizes, field, settings);
+        (self.sizes, self.field, self.splashes, self.settings) = (sizes, field, splashes, settings);
         Ok(())
     }
 
@@ -165,23 +186,55 @@ impl Rain {
     pub fn set_obstacles(&mut self, triangles: &[[[f32; 3]; 3]]) -> Result<(), RainError> {
         let scene = scene_of(triangles)?;
         self.scene_on_gpu = SceneOnGpu::new(&self.gpu, &scene, None)?;
-        self.scene = scene;
+        (self.scene, self.has_obstacles) = (scene, !triangles.is_empty());
         Ok(())
     }
 
-    /// Drops that a frame of a size shows, in the host's world: what [`Rain::render`] draws.
+    /// Drops that a frame of a size shows, in the host's world, with splashes and droplets that rebounded: what [`Rain::render`]
+    /// draws.
     ///
     /// # Errors
     /// [`RainError`] for a view outside its ranges.
     pub fn drops(&self, view: &RainView, size: [u32; 2]) -> Result<VisibleDrops, RainError> {
-        let seen = self.view(view, size)?;
-        let obstacles = Obstacles {
+        let (seen, obstacles) = (self.view(view, size)?, self.obstacles());
+        let mut visible = self.field.visible_among(&obstacles, &seen, view.time_s)?;
+        let least = visible.resolved.least_pixels;
+        let (splashes, bounce) = self.of_impacts(&seen, least, view.time_s);
+        if let Some(bounce) = bounce {
+            visible.drops.extend(self.field.bounced(&obstacles, &seen, least, view.time_s, bounce)?);
+        }
+        if let Some(splashes) = splashes {
+            visible.drops.extend(self.field.splashes(&obstacles, &seen, view.time_s, splashes)?);
+        }
+        Ok(visible)
+    }
+
+    /// What stops drops.
+    fn obstacles(&self) -> Obstacles<'_> {
+        Obstacles {
             nodes: &self.scene.nodes,
             triangles: &self.scene.triangles,
             holes: None,
             origin: DVec3::ZERO,
-        };
-        Ok(self.field.visible_among(&obstacles, &seen, view.time_s)?)
+        }
+    }
+
+    /// Splashes and rebounds of a frame, of droplets of so many pixels and more, as far as the device finds them.
+    fn of_impacts(
+        &self,
+        view: &View,
+        least_pixels: f64,
+        time_s: f64,
+    ) -> (Option<&SplashOptions>, Option<&Bounce>) {
+        if !self.has_obstacles {
+            return (None, None);
+        }
+        let (field, obstacles) = (&self.field, self.obstacles());
+        let fits = |splashes: &&SplashOptions| splashes.fits_device(field, view, time_s, &obstacles);
+        let bounce = Some(&self.settings.bounce).filter(|bounce| {
+            bounce.fraction > 0.0 && bounce.fits_device(field, view, least_pixels, time_s, &obstacles)
+        });
+        (self.splashes.as_ref().filter(fits), bounce)
     }
 
     /// Records the rain of a frame: it is blended into the color texture when `encoder` is submitted.
@@ -202,7 +255,7 @@ impl Rain {
         let eye = view.camera.eye.as_dvec3();
         self.pool.begin_frame();
         let [nodes, triangles] = self.scene_on_gpu.obstacles();
-        let bounds = self.scene.nodes.first().filter(|_| !self.scene.triangles.is_empty());
+        let bounds = self.scene.nodes.first().filter(|_| self.has_obstacles);
         let obstacles = ObstaclesOnGpu {
             nodes,
             triangles,
@@ -210,6 +263,9 @@ impl Rain {
             bounds: bounds.map(|root| [Vec3::from(root.low), Vec3::from(root.high)]),
             origin: DVec3::ZERO,
         };
+        let least = self.field.resolved(&seen, view.time_s, self.most_drops)?.least_pixels;
+        let (splashes, bounce) = self.of_impacts(&seen, least, view.time_s);
+        let (splashes, bounce) = (splashes.copied(), bounce.copied());
         let on_gpu = (&self.field, &mut self.field_on_gpu);
         let search = FieldSearch {
             view: &seen,
@@ -217,8 +273,8 @@ impl Rain {
             max_room: self.most_drops,
             pane: None,
             known: &[],
-            splashes: None,
-            bounce: None,
+            splashes: splashes.as_ref(),
+            bounce: bounce.as_ref(),
         };
         let found = self.fields.prepare(&self.pool, on_gpu, &obstacles, &search)?;
         let medium = self.medium(found.resolved())?;
@@ -268,6 +324,8 @@ impl Rain {
             least_pixels: found.resolved().least_pixels,
             buffers_made: pool.made(),
             bytes_uploaded: pool.written(),
+            has_splashes: splashes.is_some(),
+            has_droplets: bounce.is_some(),
         })
     }
 
@@ -317,13 +375,21 @@ impl Rain {
     }
 }
 
-/// Sizes and drops of a rain.
-fn falling(settings: &RainSettings) -> Result<(DropSizeDistribution, RainField), RainError> {
-    settings.check()?;
-    let options = DistributionOptions { air: settings.air, ..DistributionOptions::default() };
-    let sizes = DropSizeDistribution::with_options(settings.sizes, settings.rate_mm_h, &options)?;
-    let field = RainField::new(&sizes, settings.seed)?.with_wind(settings.uniform_wind()?);
-    Ok((sizes, field))
+/// What falls by some settings.
+struct Falling {
+    sizes: DropSizeDistribution,
+    field: RainField,
+    splashes: Option<SplashOptions>,
+}
+
+impl Falling {
+    fn of(settings: &RainSettings) -> Result<Self, RainError> {
+        settings.check()?;
+        let options = DistributionOptions { air: settings.air, ..DistributionOptions::default() };
+        let sizes = DropSizeDistribution::with_options(settings.sizes, settings.rate_mm_h, &options)?;
+        let field = RainField::new(&sizes, settings.seed)?.with_wind(settings.uniform_wind()?);
+        Ok(Self { sizes, field, splashes: splashes(&settings.splashes, &settings.air)? })
+    }
 }
 
 /// A scene of obstacles alone.

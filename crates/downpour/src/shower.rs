@@ -7,6 +7,8 @@ mod stepped;
 
 use std::sync::Arc;
 
+use downpour_drop::DropError;
+use downpour_drop::air::Air;
 use downpour_drop::distribution::{DropSizeDistribution, ExtinctionEfficiency};
 use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_drop::splash::SplashLaw;
@@ -16,7 +18,7 @@ use downpour_sim::resolved::Resolved;
 use downpour_sim::shelter::Obstacles;
 use downpour_sim::simulation::Bounce;
 use downpour_sim::view::View;
-use downpour_weather::{Rain, RainDrag, RainExtinction, RainVolume, Weather};
+use downpour_weather::{Rain, RainDrag, RainExtinction, RainVolume, Splashes, Weather};
 use downpour_wind::{UniformWind, WindField};
 use glam::DVec3;
 
@@ -89,7 +91,7 @@ impl Shower {
             _ if weather.keys.rate().is_some() => return Err(ShowerError::RateByStep),
             _ => Form::Stepped(Box::new(Stepped::new(law.clone(), weather))),
         };
-        let (dripping, splashes) = (Dripping::new(weather)?, splashes(weather)?);
+        let (dripping, splashes) = (Dripping::new(weather)?, splashes(&weather.splashes, &weather.rain.air)?);
         Ok(Self { law, weather: weather.clone(), bounce: bounce(rain), dripping, splashes, form })
     }
 
@@ -334,13 +336,12 @@ fn closed(law: &DropSizeDistribution, weather: &Weather, wind: UniformWind) -> R
     Ok(Form::Closed(Arc::new(field.with_wind(wind))))
 }
 
-/// Splashes of a weather, if it has any.
-fn splashes(weather: &Weather) -> Result<Option<SplashOptions>, ShowerError> {
-    let splashes = &weather.splashes;
+/// Splashes in an air, if drops splash.
+pub(crate) fn splashes(splashes: &Splashes, air: &Air) -> Result<Option<SplashOptions>, DropError> {
     if !splashes.is_enabled {
         return Ok(None);
     }
-    let law = SplashLaw::new(splashes.film_m, weather.rain.air.temperature_c())?;
+    let law = SplashLaw::new(splashes.film_m, air.temperature_c())?;
     Ok(Some(SplashOptions { law, size: splashes.size }))
 }
 

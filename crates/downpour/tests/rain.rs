@@ -191,19 +191,20 @@ fn mean(pixels: &[[f32; 4]]) -> f32 {
     pixels.iter().map(|p| p[0] + p[1] + p[2]).sum::<f32>() / (3 * pixels.len()) as f32
 }
 
-/// The same passes on the CPU, from colors and depths that the test knows.
-fn expected(rain: &Rain, view: &RainView, wall_m: f32) -> Vec<[f32; 4]> {
+/// The same passes on the CPU, from colors, depths and obstacles that the test knows.
+fn expected(rain: &Rain, view: &RainView, wall_m: f32, obstacles: &[[[f32; 3]; 3]]) -> Vec<[f32; 4]> {
     use downpour::drop::oscillation::{Amplitudes, Fluids};
     use downpour::render::host::{HostEnvironment, HostEnvironmentFrame, HostPlateFrame, host_plate};
     use downpour::render::picture::compose_pixel;
     use downpour::render::rain::{DropMasks, EnvironmentMap, Exposure, MediumOptions, Rain as PictureRain};
     use downpour::render::rain::{RainMedium, RainOptions};
     use downpour::render::{Plate, rain_layer};
-    use downpour::trace::{builder::SceneBuilder, data::RenderFrame, scene::SceneView, sky_light::SkyLight};
+    use downpour::trace::builder::{MeshPart, SceneBuilder};
+    use downpour::trace::{data::RenderFrame, scene::SceneView, sky_light::SkyLight};
 
     let settings = rain.settings();
     let index = downpour::drop::optics::water_index_in_air(589.3e-9, &settings.air).expect("it is possible");
-    let masks = DropMasks::trace(index).expect("it is possible");
+    let masks = DropMasks::trace(index).and_then(|masks| masks.with_splashes(index)).expect("it is possible");
     let sizes = downpour::drop::distribution::DropSizeDistribution::new(settings.sizes, settings.rate_mm_h)
         .expect("it is possible");
     let visible = rain.drops(view, SIZE).expect("it is possible");
@@ -235,7 +236,11 @@ fn expected(rain: &Rain, view: &RainView, wall_m: f32) -> Vec<[f32; 4]> {
     let map = HostEnvironmentFrame::new(&camera, picture.environment.size, None);
     let finest = HostEnvironment { frame: &map, plate: &pixels, sky: ([1, 1], &[[0.0; 4]]) }.map();
     let environment = EnvironmentMap::new(&picture.environment, finest);
-    let scene = SceneBuilder::new().build(&SkyLight::uniform([0.0; 3]));
+    let mut builder = SceneBuilder::new();
+    let corners: Vec<[f32; 3]> = obstacles.iter().flatten().copied().collect();
+    let indices: Vec<u32> = (0..corners.len() as u32).collect();
+    builder.add_mesh(&MeshPart::plain(&corners, &indices, 0), &glam::Affine3A::IDENTITY);
+    let scene = builder.build(&SkyLight::uniform([0.0; 3]));
     let of_scene = RenderFrame::new(&scene, &view.camera, SIZE, 1, 0, 0).expect("it is possible");
     let lighting = SceneView { data: &scene, frame: &of_scene };
     let clean = &pixels[..(SIZE[0] * SIZE[1]) as usize];
@@ -251,7 +256,7 @@ fn a_frame_is_that_of_the_cpu() {
     let host = Host::new(&gpu, SIZE, wgpu::TextureFormat::Rgba16Float);
     let (view, wall_m) = (view(), 6.0);
     let made = host.rain(&mut rain, &view, wall_m, &[]).unwrap();
-    let expected = expected(&rain, &view, wall_m);
+    let expected = expected(&rain, &view, wall_m, &[]);
     let plate = |i: usize| if i as u32 / SIZE[0] >= SIZE[1] / 2 { WALL } else { SKY } as f32;
     let (mut off, mut rainy) = (0, 0);
     for (i, (made, expected)) in made.iter().zip(&expected).enumerate() {
@@ -302,6 +307,15 @@ fn frames_repeat_to_the_bit_and_make_no_buffers() {
     for _ in 0..3 {
         assert!(host.rain(&mut rain, &view(), 6.0, &[lamp]).unwrap() == first, "a frame differs from itself");
     }
+    // With splashes and droplets as well: from second to second a slice of time more or less is searched.
+    rain.set_obstacles(&ground()).unwrap();
+    let begun = [3.0, 3.03].map(|time_s| made(&mut rain, time_s).buffers_made)[1];
+    for k in 0..6 {
+        let stats = made(&mut rain, 3.0 + f64::from(k) / 60.0);
+        assert!(stats.has_splashes && stats.has_droplets && stats.buffers_made == begun, "{stats:?}");
+        assert!(stats.bytes_uploaded < 64 << 10, "{} bytes", stats.bytes_uploaded);
+    }
+    rain.set_obstacles(&[]).unwrap();
     // Two rains on one device, and another size.
     let mut other = Rain::new(gpu.device(), gpu.queue(), settings()).unwrap();
     let small = Host::new(&gpu, [96, 64], wgpu::TextureFormat::Rgba16Float);
@@ -336,6 +350,63 @@ fn depth_hides_rain_and_a_roof_stops_it() {
     rain.set_settings(RainSettings { rate_mm_h: 0.0, ..settings() }).unwrap();
     let dry = host.rain(&mut rain, &view(), 20.0, &[]).unwrap();
     assert_eq!(changed(&dry), 0);
+}
+
+/// Level ground that reaches far.
+fn ground() -> [[[f32; 3]; 3]; 2] {
+    let [a, b, c, d] = [[-40.0, 0.0, -40.0], [-40.0, 0.0, 40.0], [40.0, 0.0, 40.0], [40.0, 0.0, -40.0]];
+    [[a, b, c], [a, c, d]]
+}
+
+#[test]
+fn drops_splash_on_obstacles_and_droplets_rebound() {
+    use downpour::sim::field::DropKind;
+    use downpour::sim::simulation::Bounce;
+    use downpour::weather::Splashes;
+
+    let Some(gpu) = device() else { return };
+    let bounce = Bounce { fraction: 1.0, size: 1.0, ..Bounce::default() };
+    let wet = RainSettings { bounce, ..settings() };
+    let mut rain = Rain::new(gpu.device(), gpu.queue(), wet.clone()).unwrap();
+    let host = Host::new(&gpu, SIZE, wgpu::TextureFormat::Rgba16Float);
+    // Close above the ground.
+    let eye = Vec3::new(0.5, 0.25, -2.0);
+    let view = RainView { camera: Viewpoint { eye, ..view().camera }, ..view() };
+    rain.set_obstacles(&ground()).unwrap();
+    let wall_m = 6.0;
+    let made = host.rain(&mut rain, &view, wall_m, &[]).unwrap();
+    let drops = rain.drops(&view, SIZE).unwrap().drops;
+    let count = |kind| drops.iter().filter(|drop| drop.kind == kind).count();
+    let (crowns, droplets) = (count(DropKind::Splash), count(DropKind::Bounced));
+    assert!(crowns > 5 && droplets > 5, "{crowns} crowns, {droplets} droplets");
+    let expected = expected(&rain, &view, wall_m, &ground());
+    let differ = |a: &[[f32; 4]], b: &[[f32; 4]]| {
+        a.iter().zip(b).filter(|(a, b)| (0..3).any(|k| (a[k] - b[k]).abs() > 4.0e-3)).count()
+    };
+    let off = differ(&made, &expected);
+    assert!(off < made.len() / 200, "{off} of {} pixels differ", made.len());
+    assert!((mean(&made) / mean(&expected) - 1.0).abs() < 1.0e-3, "{} {}", mean(&made), mean(&expected));
+    // The control: without either it is another picture.
+    let splashes = Splashes { is_enabled: false, ..Splashes::default() };
+    let dull = RainSettings { splashes, bounce: Bounce { fraction: 0.0, ..bounce }, ..wet.clone() };
+    rain.set_settings(dull.clone()).unwrap();
+    let without = host.rain(&mut rain, &view, wall_m, &[]).unwrap();
+    assert!(differ(&without, &expected) > 5 * off.max(20), "{}", differ(&without, &expected));
+    // Splashes that come later look as those that were there at first.
+    let mut later = Rain::new(gpu.device(), gpu.queue(), dull).unwrap();
+    later.set_obstacles(&ground()).unwrap();
+    assert!(host.rain(&mut later, &view, wall_m, &[]).unwrap() == without);
+    later.set_settings(wet).unwrap();
+    assert!(host.rain(&mut later, &view, wall_m, &[]).unwrap() == made);
+    for (bad, text) in [
+        (Splashes { size: 20.0, ..splashes }, "size of splashes is 20; allowed: 0.1 to 10"),
+        (Splashes { film_m: 0.1, is_enabled: true, ..splashes }, "film of water is 100 mm"),
+    ] {
+        let error = rain.set_settings(RainSettings { splashes: bad, ..settings() }).unwrap_err().to_string();
+        assert!(error.contains(text), "{error}");
+    }
+    let bad = RainSettings { bounce: Bounce { max_time_s: f32::NAN, ..bounce }, ..settings() };
+    assert!(rain.set_settings(bad).unwrap_err().to_string().contains("time of droplets that rebound is NaN"));
 }
 
 #[test]
@@ -410,7 +481,7 @@ fn a_color_texture_of_8_bits_is_rained_on_in_linear_light() {
     );
     gpu.queue().submit([encoder.finish()]);
     let bytes: Vec<u8> = gpu.read(&buffer).unwrap();
-    let expected = expected(&rain, &view(), 6.0);
+    let expected = expected(&rain, &view(), 6.0, &[]);
     let encode = |v: f32| {
         let v = v.clamp(0.0, 1.0);
         255.0

@@ -31,7 +31,15 @@ impl DropMasks {
     /// # Errors
     /// As [`DropMasks::of_weather`].
     pub fn with_splashes_of(self, weather: &Weather) -> Result<Self, MaskError> {
-        self.with_splashes(index_of_water(&weather.rain.air)?)
+        self.with_splashes_in_air(&weather.rain.air)
+    }
+
+    /// Adds those of splashes in an air ([`DropMasks::with_splashes`]).
+    ///
+    /// # Errors
+    /// As [`DropMasks::in_air`].
+    pub fn with_splashes_in_air(self, air: &Air) -> Result<Self, MaskError> {
+        self.with_splashes(index_of_water(air)?)
     }
 
     /// Traces the masks of drops in an air: of its temperature, but of no colder one than the refractive index is known for.

@@ -3,6 +3,8 @@
 use downpour_drop::air::Air;
 use downpour_drop::distribution::DropSizeLaw;
 use downpour_math::{OutOfRange, in_range};
+use downpour_sim::simulation::Bounce;
+use downpour_weather::Splashes;
 use downpour_wind::{UniformWind, Wind};
 
 use super::{RainError, RainView};
@@ -26,10 +28,15 @@ pub struct RainSettings {
     pub near_m: f64,
     /// Largest distance of drops that are drawn one by one, m.
     pub far_m: f64,
+    /// Splashes where drops hit obstacles ([`Rain::set_obstacles`](super::Rain::set_obstacles)).
+    pub splashes: Splashes,
+    /// Droplets that rebound from obstacles; a fraction of 0: none.
+    pub bounce: Bounce,
 }
 
 impl Default for RainSettings {
-    /// 10 mm/h of Marshall & Palmer's sizes in still standard air; up to 200 000 drops from 5 cm to 50 m.
+    /// 10 mm/h of Marshall & Palmer's sizes in still standard air; up to 200 000 drops from 5 cm to 50 m, which splash on half a
+    /// millimeter of water.
     fn default() -> Self {
         Self {
             rate_mm_h: 10.0,
@@ -40,6 +47,8 @@ impl Default for RainSettings {
             max_drops: 200_000,
             near_m: 0.05,
             far_m: 50.0,
+            splashes: Splashes::default(),
+            bounce: Bounce::default(),
         }
     }
 }
@@ -62,6 +71,17 @@ impl RainSettings {
             1.0,
             "the least distance to 1e5",
         )?;
+        in_range("size of splashes", self.splashes.size, "", &(0.1..=10.0), 1.0, "0.1 to 10")?;
+        let bounce = &self.bounce;
+        for (name, value, range, allowed) in [
+            ("fraction of impacts that rebound", bounce.fraction, 0.0..=1.0, "0 to 1"),
+            ("restitution of rebounds", bounce.restitution, 0.0..=1.0, "0 to 1"),
+            ("grip of rebounds", bounce.grip, 0.0..=1.0, "0 to 1"),
+            ("size of droplets that rebound", bounce.size, 0.05..=1.0, "0.05 to 1"),
+        ] {
+            in_range(name, value, "", &range, 1.0, allowed)?;
+        }
+        in_range("time of droplets that rebound", bounce.max_time_s, "s", &(0.01..=10.0), 1.0, "0.01 to 10")?;
         Ok(())
     }
 }
