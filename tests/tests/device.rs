@@ -8,7 +8,8 @@ use std::time::Duration;
 
 use downpour_drop::DropShape;
 use downpour_gpu::{
-    AdapterChoice, ComputeKernel, FramePasses, Gpu, GpuError, GpuOptions, LimitSet, ReadbackPool, wgpu,
+    AdapterChoice, BufferPool, BufferSource as _, ComputeKernel, FramePasses, Gpu, GpuError, GpuOptions,
+    LimitSet, ReadbackPool, wgpu,
 };
 use downpour_mask::gpu::{GpuMaskError, GpuTracer};
 use downpour_mask::{Mask, MaskOptions};
@@ -27,10 +28,11 @@ fn main() -> ExitCode {
         eprintln!("{}", adapter::missing(&error));
         return ExitCode::FAILURE;
     }
-    let tests: [Test; 13] = [
+    let tests: [Test; 14] = [
         ("what_is_written_is_read", what_is_written_is_read),
         ("a_readback_is_of_the_time_when_it_began", a_readback_is_of_the_time_when_it_began),
         ("passes_of_a_frame_have_times", passes_of_a_frame_have_times),
+        ("a_pool_keeps_buffers_and_bindings", a_pool_keeps_buffers_and_bindings),
         ("limits_are_checked_first", limits_are_checked_first),
         ("a_lost_device_gives_nothing", a_lost_device_gives_nothing),
         ("loss_is_seen_at_any_submission", loss_is_seen_at_any_submission),
@@ -130,6 +132,29 @@ fn passes_of_a_frame_have_times() -> Outcome {
     let whole = times.iter().all(|(_, ms)| ms.is_finite() && (0.0..1.0e4).contains(ms));
     check(whole && times[2].1 > 0.0, format!("{times:?}"))?;
     check(gpu.read::<u32>(&counts)? == [303; 256], "each dispatch ran once")
+}
+
+/// A pool gives a frame the buffers and the bindings of the frame before, and forgets bindings that no frame has asked for.
+fn a_pool_keeps_buffers_and_bindings() -> Outcome {
+    let gpu = adapter::open()?;
+    let kernel = ComputeKernel::from_source(&gpu, "main", COUNT, &[])?;
+    let pool = BufferPool::new(&gpu);
+    let frame = |label| -> Result<(wgpu::Buffer, wgpu::BindGroup), GpuError> {
+        pool.begin_frame();
+        let counts = pool.storage(label, &[0u32; 256])?;
+        let bound = kernel.bind(&pool, &[&counts])?;
+        Ok((counts, bound))
+    };
+    let (first, other) = (frame("counts")?, frame("other")?);
+    check(first != other, "other buffers have other bindings")?;
+    check(frame("counts")? == first, "the frame before last is known")?;
+    let anew = ComputeKernel::from_source(&gpu, "main", COUNT, &[])?.bind(&pool, &[&first.0])?;
+    check(anew != first.1, "another pipeline has other bindings")?;
+    for _ in 0..10 {
+        frame("other")?;
+    }
+    let (counts, bound) = frame("counts")?;
+    check(counts == first.0 && bound != first.1, "bindings are kept for some frames")
 }
 
 /// Adds 1 to each word.

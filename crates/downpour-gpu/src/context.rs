@@ -209,21 +209,21 @@ impl Gpu {
     /// # Errors
     /// As [`Gpu::create`]; [`GpuError::OverLimit`] if a dispatch has more workgroups than the device allows.
     pub fn submit(&self, dispatches: &[Dispatch<'_>]) -> Result<(), GpuError> {
-        self.submit_stages(&[dispatches], None)?;
+        self.submit_commands([self.record_stages(&[dispatches], None)?]);
         Ok(())
     }
 
-    /// Submits stages of dispatches in order as one command buffer, a compute pass for each stage, which may write timestamps at
+    /// Records stages of dispatches in order as one command buffer, a compute pass for each stage, which may write timestamps at
     /// the beginning of the first and the end of the last.
-    pub(crate) fn submit_stages(
+    pub(crate) fn record_stages(
         &self,
         stages: &[&[Dispatch<'_>]],
         timestamps: Option<Timestamps<'_>>,
-    ) -> Result<wgpu::SubmissionIndex, GpuError> {
+    ) -> Result<wgpu::CommandBuffer, GpuError> {
         for dispatch in stages.iter().copied().flatten() {
             dispatch.check(&self.device.limits())?;
         }
-        let commands = self.create("a command buffer", 0, |device| {
+        self.create("a command buffer", 0, |device| {
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             for (k, dispatches) in stages.iter().enumerate() {
                 let timestamp_writes =
@@ -235,13 +235,15 @@ impl Gpu {
                 }
             }
             encoder.finish()
-        })?;
-        Ok(self.submit_commands(commands))
+        })
     }
 
-    /// Submits recorded commands, and destroys the device if the options ask for it.
-    pub(crate) fn submit_commands(&self, commands: wgpu::CommandBuffer) -> wgpu::SubmissionIndex {
-        let submitted = self.queue.submit([commands]);
+    /// Submits recorded commands in one submission, and destroys the device if the options ask for it.
+    pub(crate) fn submit_commands(
+        &self,
+        commands: impl IntoIterator<Item = wgpu::CommandBuffer>,
+    ) -> wgpu::SubmissionIndex {
+        let submitted = self.queue.submit(commands);
         let done = self.health.submissions.fetch_add(1, Ordering::Relaxed) + 1;
         if self.health.lose_after == Some(done) {
             self.device.destroy();

@@ -2,7 +2,7 @@
 
 use downpour_shaders::Kernel;
 
-use crate::{Gpu, GpuError};
+use crate::{BufferSource, Gpu, GpuError};
 
 /// A compute pipeline whose buffers are bindings of group 0.
 #[derive(Clone, Debug)]
@@ -60,12 +60,16 @@ impl ComputeKernel {
         Ok(Self { pipeline, label: entry.to_owned() })
     }
 
-    /// Binds the buffers to bindings 0, 1, 2, ... of group 0.
+    /// Binds the buffers to bindings 0, 1, 2, ... of group 0. A [`BufferPool`](crate::BufferPool) keeps what it has bound for the next frame.
     ///
     /// # Errors
     /// [`GpuError::Refused`] if number, usage or size of the buffers are not what the kernel declares.
-    pub fn bind(&self, gpu: &Gpu, buffers: &[&wgpu::Buffer]) -> Result<wgpu::BindGroup, GpuError> {
-        self.bind_at(gpu, (0..).zip(buffers.iter().copied()))
+    pub fn bind(
+        &self,
+        source: &impl BufferSource,
+        buffers: &[&wgpu::Buffer],
+    ) -> Result<wgpu::BindGroup, GpuError> {
+        self.bind_at(source, (0..).zip(buffers.iter().copied()))
     }
 
     /// Binds buffers to bindings of group 0 by number.
@@ -74,13 +78,25 @@ impl ComputeKernel {
     /// As [`ComputeKernel::bind`].
     pub fn bind_at<'a>(
         &self,
-        gpu: &Gpu,
+        source: &impl BufferSource,
         buffers: impl IntoIterator<Item = (u32, &'a wgpu::Buffer)>,
     ) -> Result<wgpu::BindGroup, GpuError> {
-        self.bind_resources(
-            gpu,
-            buffers.into_iter().map(|(binding, buffer)| (binding, buffer.as_entire_binding())),
-        )
+        source.bound(self, &buffers.into_iter().collect::<Vec<_>>())
+    }
+
+    /// The same, anew.
+    pub(crate) fn bind_anew(
+        &self,
+        gpu: &Gpu,
+        buffers: &[(u32, &wgpu::Buffer)],
+    ) -> Result<wgpu::BindGroup, GpuError> {
+        let resources = buffers.iter().map(|&(binding, buffer)| (binding, buffer.as_entire_binding()));
+        self.bind_resources(gpu, resources)
+    }
+
+    /// The pipeline, by which bindings are known.
+    pub(crate) fn pipeline(&self) -> &wgpu::ComputePipeline {
+        &self.pipeline
     }
 
     /// Binds buffers and textures to bindings of group 0 by number.

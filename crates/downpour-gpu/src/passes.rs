@@ -15,6 +15,8 @@ pub struct FramePasses {
     gpu: Gpu,
     clock: Option<Clock>,
     times: Vec<(&'static str, PassEnd)>,
+    /// Passes that are not submitted yet: each submission costs the host as much as some passes.
+    recorded: Vec<wgpu::CommandBuffer>,
 }
 
 /// Timestamps of passes: begin and end of the n-th are the queries 2 n and 2 n + 1.
@@ -69,7 +71,7 @@ impl FramePasses {
         } else {
             None
         };
-        Ok(Self { gpu: gpu.clone(), clock, times: Vec::new() })
+        Ok(Self { gpu: gpu.clone(), clock, times: Vec::new(), recorded: Vec::new() })
     }
 
     /// Notes the time of other work, ms.
@@ -85,22 +87,22 @@ impl FramePasses {
         made
     }
 
-    /// Submits a pass.
+    /// Runs a pass. On a device with a clock it is submitted with the next ones, at the latest by [`FramePasses::end`].
     ///
     /// # Errors
     /// As [`Gpu::submit`] and [`Gpu::wait`].
     pub fn run(&mut self, name: &'static str, dispatches: &[Dispatch<'_>]) -> Result<(), GpuError> {
-        self.run_parts(name, &[&[dispatches]])
+        self.run_parts(name, &[&[dispatches]], false)
     }
 
-    /// Submits a pass in stages: the dispatches of a stage do not wait for one another, where they write different buffers, but for
+    /// Runs a pass in stages: the dispatches of a stage do not wait for one another, where they write different buffers, but for
     /// all of the stage before. (Between two dispatches of one stage that write the same buffer the later one waits for all before it.)
     ///
     /// # Errors
     /// As [`FramePasses::run`].
     pub fn run_stages(&mut self, name: &'static str, stages: &[Vec<Dispatch<'_>>]) -> Result<(), GpuError> {
         let stages: Vec<&[Dispatch<'_>]> = stages.iter().map(Vec::as_slice).collect();
-        self.run_parts(name, &[&stages])
+        self.run_parts(name, &[&stages], false)
     }
 
     /// Submits a pass, each dispatch by itself: drivers reset a device that is busy with one submission for too long.
@@ -110,16 +112,22 @@ impl FramePasses {
     pub fn run_each(&mut self, name: &'static str, dispatches: &[Dispatch<'_>]) -> Result<(), GpuError> {
         let stages: Vec<[&[Dispatch<'_>]; 1]> = dispatches.chunks(1).map(|one| [one]).collect();
         let parts: Vec<&[&[Dispatch<'_>]]> = stages.iter().map(<[_; 1]>::as_slice).collect();
-        self.run_parts(name, &parts)
+        self.run_parts(name, &parts, true)
     }
 
-    /// Submits parts of a pass, each in stages.
-    fn run_parts(&mut self, name: &'static str, parts: &[&[&[Dispatch<'_>]]]) -> Result<(), GpuError> {
+    /// Runs parts of a pass, each in stages, and submits each of them at once if it stands `apart`.
+    fn run_parts(
+        &mut self,
+        name: &'static str,
+        parts: &[&[&[Dispatch<'_>]]],
+        apart: bool,
+    ) -> Result<(), GpuError> {
         let Some(clock) = self.clock.as_mut().filter(|clock| clock.used < clock.most && !parts.is_empty())
         else {
+            self.submit_recorded();
             let begin = Instant::now();
             for part in parts {
-                self.gpu.submit_stages(part, None)?;
+                self.gpu.submit_commands([self.gpu.record_stages(part, None)?]);
                 self.gpu.wait()?;
             }
             self.note(name, begin.elapsed().as_secs_f64() * 1.0e3);
@@ -134,7 +142,10 @@ impl FramePasses {
                 begin: is_first.then_some(2 * used),
                 end: is_last.then_some(2 * used + 1),
             };
-            self.gpu.submit_stages(part, Some(timestamps))?;
+            self.recorded.push(self.gpu.record_stages(part, Some(timestamps))?);
+            if apart {
+                self.gpu.submit_commands(self.recorded.drain(..));
+            }
             if k % WAIT_EVERY == WAIT_EVERY - 1 {
                 self.gpu.wait()?;
             }
@@ -143,12 +154,18 @@ impl FramePasses {
         Ok(())
     }
 
+    fn submit_recorded(&mut self) {
+        if !self.recorded.is_empty() {
+            self.gpu.submit_commands(self.recorded.drain(..));
+        }
+    }
+
     /// Ends the passes. The buffer, of a device with a clock, holds its ticks for [`FrameTimes::read`] as soon as the device is done.
     ///
     /// # Errors
     /// As [`Gpu::create`].
     pub fn end(self) -> Result<(FrameTimes, Option<wgpu::Buffer>), GpuError> {
-        let Self { gpu, clock, times } = self;
+        let Self { gpu, clock, times, mut recorded } = self;
         let mut ticks = None;
         if let Some(clock) = clock.filter(|clock| clock.used > 0) {
             let commands = gpu.create("times of passes", 0, |device| {
@@ -156,8 +173,11 @@ impl FramePasses {
                 encoder.resolve_query_set(&clock.queries, 0..2 * clock.used, &clock.ticks, 0);
                 encoder.finish()
             })?;
-            gpu.submit_commands(commands);
+            recorded.push(commands);
             ticks = Some(clock.ticks);
+        }
+        if !recorded.is_empty() {
+            gpu.submit_commands(recorded);
         }
         Ok((FrameTimes { times, period: gpu.queue().get_timestamp_period().into() }, ticks))
     }

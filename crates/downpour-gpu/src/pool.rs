@@ -5,13 +5,19 @@ use std::sync::{Mutex, PoisonError};
 
 use bytemuck::Pod;
 
-use crate::{Gpu, GpuError};
+use crate::{ComputeKernel, Gpu, GpuError};
 
 /// Least size of a kept storage buffer, bytes: lists of few drops change the most from frame to frame.
 const MIN_BYTES: u64 = 256 << 10;
 
 /// Buffers below this size, bytes, get as much room again as they need; larger ones a quarter.
 const SMALL: u64 = 4 << 20;
+
+/// Frames after which bindings that no frame has asked for are forgotten, with their hold on buffers.
+const BINDINGS_LAST: u64 = 8;
+
+/// A kernel's pipeline with the buffers of its bindings.
+type BoundTo = (wgpu::ComputePipeline, Vec<(u32, wgpu::Buffer)>);
 
 /// Buffers of a label that are kept after they were given back.
 const MAX_RETURNED: usize = 4;
@@ -31,6 +37,18 @@ pub trait BufferSource {
 
     /// Device and queue of the buffers.
     fn gpu(&self) -> &Gpu;
+
+    /// Binds buffers to a kernel's bindings of group 0 by number.
+    ///
+    /// # Errors
+    /// As [`ComputeKernel::bind`].
+    fn bound(
+        &self,
+        kernel: &ComputeKernel,
+        buffers: &[(u32, &wgpu::Buffer)],
+    ) -> Result<wgpu::BindGroup, GpuError> {
+        kernel.bind_anew(self.gpu(), buffers)
+    }
 
     /// Writes the beginning of a buffer, before whatever is submitted next.
     fn write(&self, buffer: &wgpu::Buffer, bytes: &[u8]) {
@@ -76,7 +94,7 @@ impl BufferSource for Gpu {
     }
 }
 
-/// Buffers of a frame, kept for the next one.
+/// Buffers of a frame and what they are bound to, kept for the next one.
 ///
 /// The n-th buffer of a label in a frame is the n-th of that label in the frame before, if that one is large enough; else it is
 /// created anew, with room to grow. So a loop of like frames creates no buffer after the first. All writes go through the
@@ -96,6 +114,10 @@ struct Kept {
     used: HashMap<&'static str, usize>,
     /// Buffers that were given back.
     returned: HashMap<&'static str, Vec<wgpu::Buffer>>,
+    /// What was bound, with the last frame that asked for it.
+    bindings: HashMap<BoundTo, (wgpu::BindGroup, u64)>,
+    /// Number of the current frame.
+    frame: u64,
     /// Buffers that were created.
     made: u64,
     /// Bytes that were written in the current frame.
@@ -130,6 +152,9 @@ impl BufferPool {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         kept.used.clear();
         kept.written = 0;
+        kept.frame += 1;
+        let oldest = kept.frame.saturating_sub(BINDINGS_LAST);
+        kept.bindings.retain(|_, (_, last)| *last >= oldest);
     }
 
     /// Number of bytes that were written in the current frame.
@@ -193,6 +218,24 @@ impl BufferSource for BufferPool {
         };
         kept.used.insert(label, nth + 1);
         Ok(buffer)
+    }
+
+    fn bound(
+        &self,
+        kernel: &ComputeKernel,
+        buffers: &[(u32, &wgpu::Buffer)],
+    ) -> Result<wgpu::BindGroup, GpuError> {
+        let all = buffers.iter().map(|&(binding, buffer)| (binding, buffer.clone())).collect();
+        let to = (kernel.pipeline().clone(), all);
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let frame = kept.frame;
+        if let Some((known, last)) = kept.bindings.get_mut(&to) {
+            *last = frame;
+            return Ok(known.clone());
+        }
+        let made = kernel.bind_anew(&self.gpu, buffers)?;
+        kept.bindings.insert(to, (made.clone(), frame));
+        Ok(made)
     }
 
     fn write(&self, buffer: &wgpu::Buffer, bytes: &[u8]) {

@@ -55,7 +55,7 @@ impl ReadbackPool {
             }
             encoder.finish()
         })?;
-        let submission = gpu.submit_commands(commands);
+        let submission = gpu.submit_commands([commands]);
         let mapped = |(buffer, bytes): (wgpu::Buffer, u64)| {
             let (sender, mapped) = mpsc::channel();
             buffer.map_async(wgpu::MapMode::Read, ..bytes, move |result| {

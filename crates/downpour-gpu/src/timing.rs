@@ -63,7 +63,7 @@ impl Gpu {
         })?;
         self.wait()?;
         let start = Instant::now();
-        self.submit_commands(commands);
+        self.submit_commands([commands]);
         self.wait()?;
         let wall = start.elapsed() / repeats;
         let device = match &queries {

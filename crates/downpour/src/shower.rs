@@ -5,7 +5,7 @@ mod error;
 mod scenery;
 mod stepped;
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use downpour_drop::DropError;
 use downpour_drop::air::Air;
@@ -69,6 +69,17 @@ pub struct Shower {
     splashes: Option<SplashOptions>,
     dripping: Option<Dripping>,
     form: Form,
+    /// The last medium of a rain that does not change.
+    last: Arc<Mutex<Option<LastMedium>>>,
+}
+
+/// Drops that a picture did not draw one by one, with all that they depend on.
+#[derive(Debug)]
+struct LastMedium {
+    resolved: Resolved,
+    options: MediumOptions,
+    masks: DropMasks,
+    medium: RainMedium,
 }
 
 impl Shower {
@@ -92,7 +103,8 @@ impl Shower {
             _ => Form::Stepped(Box::new(Stepped::new(law.clone(), weather))),
         };
         let (dripping, splashes) = (Dripping::new(weather)?, splashes(&weather.splashes, &weather.rain.air)?);
-        Ok(Self { law, weather: weather.clone(), bounce: bounce(rain), dripping, splashes, form })
+        let last = Arc::default();
+        Ok(Self { law, weather: weather.clone(), bounce: bounce(rain), dripping, splashes, form, last })
     }
 
     /// Finds where water drips in a scene, which takes a while. Else it is found for the first picture, in the scene of that: of a scene
@@ -279,13 +291,34 @@ impl Shower {
         };
         let with_fog = |medium: RainMedium| medium.with_fog(self.weather.fog.as_ref(), frame_scene.origin.y);
         if self.weather.keys.rate().is_none() {
-            return Ok(with_fog(RainMedium::new(&self.law, resolved, masks, &options)?));
+            return Ok(with_fog(self.steady_medium(resolved, masks, &options)?));
         }
         // The drops about the eye pass the height of the rate at another time.
         let above = frame_scene.view()?.eye.y - self.weather.rain.rate_height_m;
         let passing_s = time_s + above / fall_speed(&self.law).max(0.1);
         let rain = self.weather.rain_at(passing_s);
         Ok(with_fog(RainMedium::new(&rain.sizes()?, resolved, masks, &options)?))
+    }
+
+    /// The medium of a rain that does not change: from frame to frame only its velocity does.
+    fn steady_medium(
+        &self,
+        resolved: &Resolved,
+        masks: &DropMasks,
+        options: &MediumOptions,
+    ) -> Result<RainMedium, DropError> {
+        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        let moving = |of: &MediumOptions| MediumOptions { velocity: options.velocity, ..*of };
+        let known = last.as_ref().filter(|last| {
+            last.resolved == *resolved && moving(&last.options) == *options && last.masks.is_same(masks)
+        });
+        if let Some(last) = known {
+            return Ok(last.medium.with_velocity(options.velocity));
+        }
+        let medium = RainMedium::new(&self.law, resolved, masks, options)?;
+        let (resolved, options, masks) = (*resolved, *options, masks.clone());
+        *last = Some(LastMedium { resolved, options, masks, medium });
+        Ok(medium)
     }
 
     /// The rate, mm/h, of the drops about the eye (in closed form) or in the simulated volume, with those that something

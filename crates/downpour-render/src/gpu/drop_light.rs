@@ -76,7 +76,6 @@ impl DropLightPipeline {
         drops: &wgpu::Buffer,
         count: u32,
     ) -> Result<DropLightPass<'a>, GpuError> {
-        let gpu = &self.gpu;
         let rows = count as usize * lights.stride();
         let light = buffers.buffer("light on drops", rows.max(1) as u64 * 16, wgpu::BufferUsages::STORAGE)?;
         let mut parts = Vec::new();
@@ -84,7 +83,7 @@ impl DropLightPipeline {
             let part = buffers.uniform("lamps", &part)?;
             let own = [drops, &table.table, &light, &part];
             let bound: Vec<_> = lighting.buffers.iter().chain(own).collect();
-            parts.push(self.kernel.bind(gpu, &bound)?);
+            parts.push(self.kernel.bind(buffers, &bound)?);
         }
         let groups = count.div_ceil(64).max(1);
         Ok(DropLightPass { pipeline: self, parts, groups, rows, light })

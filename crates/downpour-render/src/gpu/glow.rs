@@ -11,7 +11,6 @@ use crate::glow::{Glow, GlowPlan, GlowStep};
 /// Pipelines of glow: made once, used for any number of pictures.
 #[derive(Clone, Debug)]
 pub struct GlowPipeline {
-    gpu: Gpu,
     take: ComputeKernel,
     down: ComputeKernel,
     up: ComputeKernel,
@@ -35,7 +34,6 @@ impl GlowPipeline {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let kernel = |kernel| ComputeKernel::new(gpu, kernel, &[]);
         Ok(Self {
-            gpu: gpu.clone(),
             take: kernel(&GLOW_TAKE_KERNEL)?,
             down: kernel(&GLOW_DOWN_KERNEL)?,
             up: kernel(&GLOW_UP_KERNEL)?,
@@ -67,7 +65,6 @@ impl GlowPipeline {
         plate: &wgpu::Buffer,
         rain: &wgpu::Buffer,
     ) -> Result<Option<GlowPass<'_>>, GpuError> {
-        let gpu = &self.gpu;
         let size = camera.size();
         let plan = GlowPlan::new(glow, size, camera.pixel_angle);
         if plan.steps.is_empty() {
@@ -77,23 +74,23 @@ impl GlowPipeline {
             buffers.buffer("levels of the glow", 16 * plan.texels as u64, wgpu::BufferUsages::STORAGE)?;
         let pixels = u64::from(size[0]) * u64::from(size[1]);
         let target = buffers.buffer("glow", 16 * pixels, wgpu::BufferUsages::STORAGE)?;
-        let steps =
-            plan.steps
-                .iter()
-                .map(|(step, level)| {
-                    let uniform = buffers.uniform("level of the glow", level)?;
-                    let both = [(0, &uniform), (1, &texels)];
-                    let kernel = self.kernel(*step);
-                    let bound = match step {
-                        GlowStep::Take => kernel
-                            .bind_at(gpu, both.into_iter().chain([(2, plate), (3, rain), (4, &target)]))?,
-                        GlowStep::Add => kernel.bind_at(gpu, both.into_iter().chain([(4, &target)]))?,
-                        _ => kernel.bind_at(gpu, both)?,
-                    };
-                    let [columns, rows] = if *step == GlowStep::Down { level.coarse } else { level.size };
-                    Ok((*step, bound, [columns.div_ceil(8), rows.div_ceil(8), 1]))
-                })
-                .collect::<Result<_, GpuError>>()?;
+        let steps = plan
+            .steps
+            .iter()
+            .map(|(step, level)| {
+                let uniform = buffers.uniform("level of the glow", level)?;
+                let both = [(0, &uniform), (1, &texels)];
+                let kernel = self.kernel(*step);
+                let bound = match step {
+                    GlowStep::Take => kernel
+                        .bind_at(buffers, both.into_iter().chain([(2, plate), (3, rain), (4, &target)]))?,
+                    GlowStep::Add => kernel.bind_at(buffers, both.into_iter().chain([(4, &target)]))?,
+                    _ => kernel.bind_at(buffers, both)?,
+                };
+                let [columns, rows] = if *step == GlowStep::Down { level.coarse } else { level.size };
+                Ok((*step, bound, [columns.div_ceil(8), rows.div_ceil(8), 1]))
+            })
+            .collect::<Result<_, GpuError>>()?;
         Ok(Some(GlowPass { pipeline: self, steps, target }))
     }
 }

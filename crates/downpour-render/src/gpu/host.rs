@@ -118,7 +118,7 @@ impl HostPipeline {
         let mut coarser = Vec::new();
         for level in &levels {
             let uniform = buffers.uniform("level of the host's plate", level)?;
-            coarser.push((self.pyramid.bind(gpu, &[&uniform, &pixels])?, groups(level.size)));
+            coarser.push((self.pyramid.bind(buffers, &[&uniform, &pixels])?, groups(level.size)));
         }
         let frame = buffers.uniform("frame of the host's environment", environment)?;
         let seen = self.environment.bind_resources(

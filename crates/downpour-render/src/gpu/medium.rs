@@ -55,7 +55,6 @@ impl MediumPipeline {
         medium: &MediumLight<'_>,
         layer: &wgpu::Buffer,
     ) -> Result<MediumPass<'a>, GpuError> {
-        let gpu = &self.gpu;
         let [width, height] = medium.camera.size();
         let pixels = u64::from(width) * u64::from(height);
         let rows = medium.grid_rows() as u64 + 2 * pixels;
@@ -64,11 +63,11 @@ impl MediumPipeline {
         let frame = buffers.uniform("medium frame", &medium.medium)?;
         let clean = plate.pixels;
         let numbered = || (0u32..).zip(&plate.lighting.buffers);
-        let open = self.open.bind_at(gpu, numbered().chain([(8, &found), (9, &frame)]))?;
+        let open = self.open.bind_at(buffers, numbered().chain([(8, &found), (9, &frame)]))?;
         let of_light = [(6, clean), (7, &phase), (8, &found), (9, &frame)];
-        let light = self.light.bind_at(gpu, numbered().chain(of_light))?;
+        let light = self.light.bind_at(buffers, numbered().chain(of_light))?;
         let of_filter = [(0, &plate.lighting.buffers[0]), (1, &found), (2, clean), (3, layer), (9, &frame)];
-        let filter = self.filter.bind_at(gpu, of_filter)?;
+        let filter = self.filter.bind_at(buffers, of_filter)?;
         let cells = medium.medium.columns * medium.medium.rows;
         Ok(MediumPass {
             pipeline: self,

@@ -147,7 +147,7 @@ impl ProjectPipeline {
         let uniform = buffers.uniform("project frame", project)?;
         let bound = [&uniform, falling.drops, masks, falling.frequencies, &list, &rows];
         let by_drop = workgroups_for(room);
-        let of_project = (self.project.bind(&self.gpu, &bound)?, by_drop);
+        let of_project = (self.project.bind(buffers, &bound)?, by_drop);
 
         let uniform = buffers.uniform("profiles frame", profiles)?;
         let (max_paths, [ray_jobs, light_jobs]) = (profiles.max_paths(), profiles.max_jobs());
@@ -163,7 +163,7 @@ impl ProjectPipeline {
         let all =
             [&uniform, &list, &rows, masks, &state, &paths, &jobs[0], &jobs[1], &streaks, &classes, &found];
         let clear = workgroups_for((streaks.size() / 16) as u32);
-        let of_profiles = self.profiles.bind(&all, &[clear, by_drop, by_drop, [1; 3]])?;
+        let of_profiles = self.profiles.bind(buffers, &all, &[clear, by_drop, by_drop, [1; 3]])?;
         let made = ListOnGpu {
             count: room,
             list,

@@ -201,12 +201,11 @@ impl RainPipeline {
         lights: &[DropLights<'_>; 2],
         (project, drops, lamps): (Option<ProjectPass<'a>>, ListOnGpu, [DropLightPass<'a>; 2]),
     ) -> Result<RainPass<'a>, GpuError> {
-        let gpu = &self.gpu;
         let storage = wgpu::BufferUsages::STORAGE;
         let (clean, texels) = (plate.pixels, plate.environment.clone());
         let level = |level: &PyramidLevel| {
             let uniform = buffers.uniform("level of the environment map", level)?;
-            Ok((self.pyramid.bind(gpu, &[&uniform, &texels])?, level.size[0].div_ceil(8)))
+            Ok((self.pyramid.bind(buffers, &[&uniform, &texels])?, level.size[0].div_ceil(8)))
         };
         let levels = rain.environment.levels().iter().map(level).collect::<Result<_, GpuError>>()?;
         let picture = rain.frame.camera.size();
@@ -218,11 +217,12 @@ impl RainPipeline {
         let [rays, entries] = drops.room.map(|count| u64::from(count.max(1)));
         let table = buffers.buffer("streak radiance", entries * 16, storage)?;
         let rays = buffers.buffer("rays of streaks", rays * size_of::<StreakRay>() as u64, storage)?;
-        let means = (self.means.bind(gpu, &[&frame, &texels, &drops.classes.0, &table])?, drops.classes.1);
+        let means =
+            (self.means.bind(buffers, &[&frame, &texels, &drops.classes.0, &table])?, drops.classes.1);
         let [ray_jobs, light_jobs] = &drops.jobs;
-        let traced = self.rays.bind(gpu, &[&drops.list, &drops.paths, ray_jobs, &table, &rays])?;
+        let traced = self.rays.bind(buffers, &[&drops.list, &drops.paths, ray_jobs, &table, &rays])?;
         let all = [&frame, &texels, &drops.list, &drops.paths, light_jobs, &rays, lamps[1].light(), &table];
-        let lit = self.light.bind(gpu, &all)?;
+        let lit = self.light.bind(buffers, &all)?;
         let medium = self.medium.prepare(buffers, plate, &rain.medium_light(&lights[0]), &layer)?;
         let bindings = [
             &frame,
@@ -236,7 +236,7 @@ impl RainPipeline {
             lamps[0].light(),
             medium.frame(),
         ];
-        let shown = self.drops.bind(gpu, &bindings)?;
+        let shown = self.drops.bind(buffers, &bindings)?;
         Ok(RainPass {
             pipeline: self,
             size: picture,

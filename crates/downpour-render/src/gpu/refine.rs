@@ -6,7 +6,6 @@ use downpour_shaders::render::refine::REFINE_KERNEL;
 /// Pipeline of means of pictures.
 #[derive(Clone, Debug)]
 pub struct RefinePipeline {
-    gpu: Gpu,
     kernel: ComputeKernel,
 }
 
@@ -24,7 +23,7 @@ impl RefinePipeline {
     /// # Errors
     /// Returns the error of the GPU.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { gpu: gpu.clone(), kernel: ComputeKernel::new(gpu, &REFINE_KERNEL, &[])? })
+        Ok(Self { kernel: ComputeKernel::new(gpu, &REFINE_KERNEL, &[])? })
     }
 
     /// Makes ready to take a picture of `size` columns and rows into a mean, as its `count`-th from 1 on.
@@ -41,7 +40,7 @@ impl RefinePipeline {
     ) -> Result<RefinePass<'_>, GpuError> {
         let [width, height] = size;
         let frame = buffers.uniform("mean of pictures", &[width, height, count, 0])?;
-        let bindings = self.kernel.bind(&self.gpu, &[&frame, next, mean])?;
+        let bindings = self.kernel.bind(buffers, &[&frame, next, mean])?;
         Ok(RefinePass { kernel: &self.kernel, bindings, groups: [width.div_ceil(8), height.div_ceil(8), 1] })
     }
 }

@@ -77,11 +77,12 @@ impl TilesPipeline {
         let all = [&uniform, drops, &counts, &lists];
         let by_drop = workgroups_for(frame.count);
         let clear = workgroups_for((counts.size() / 4) as u32);
-        let passes = self.lists.bind(&all, &[clear, by_drop, by_drop, [1; 3], by_drop, workgroups(tiles)])?;
+        let passes =
+            self.lists.bind(buffers, &all, &[clear, by_drop, by_drop, [1; 3], by_drop, workgroups(tiles)])?;
         // In steps, so that frames of about as many drops have buffers of one size.
         let seen = u64::from(frame.count.max(1).next_multiple_of(SEEN_STEP));
         let seen = buffers.buffer("distances of drops", seen * 4, storage)?;
-        let of_seen = self.seen.bind_at(&self.gpu, [(0, &uniform), (1, drops), (4, plate), (5, &seen)])?;
+        let of_seen = self.seen.bind_at(buffers, [(0, &uniform), (1, drops), (4, plate), (5, &seen)])?;
         Ok(TilesPass { pipeline: self, passes, of_seen: (of_seen, by_drop), seen, count: frame.count, lists })
     }
 }

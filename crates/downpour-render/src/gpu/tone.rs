@@ -8,7 +8,6 @@ use crate::tone::{ToneCurve, ToneFrame, tone_number};
 /// Pipeline of pictures to look at.
 #[derive(Clone, Debug)]
 pub struct TonePipeline {
-    gpu: Gpu,
     kernel: ComputeKernel,
 }
 
@@ -40,7 +39,7 @@ impl TonePipeline {
     /// # Errors
     /// Returns the error of the GPU.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { gpu: gpu.clone(), kernel: ComputeKernel::new(gpu, &TONE_KERNEL, &[])? })
+        Ok(Self { kernel: ComputeKernel::new(gpu, &TONE_KERNEL, &[])? })
     }
 
     /// Makes ready to make the picture of some layers, with the factor from radiance to display and a curve.
@@ -63,7 +62,7 @@ impl TonePipeline {
         let target = buffers.buffer("display picture", bytes, wgpu::BufferUsages::STORAGE)?;
         // Without glow nothing is read there.
         let glow = layers.glow.unwrap_or(layers.rain);
-        let bindings = self.kernel.bind(&self.gpu, &[&frame, layers.plate, layers.rain, glow, &target])?;
+        let bindings = self.kernel.bind(buffers, &[&frame, layers.plate, layers.rain, glow, &target])?;
         let groups = [width.div_ceil(8), height.div_ceil(8), 1];
         Ok(TonePass { kernel: &self.kernel, bindings, groups, target })
     }

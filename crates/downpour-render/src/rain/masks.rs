@@ -230,6 +230,12 @@ impl DropMasks {
         Ok(self)
     }
 
+    /// True if these are the masks of others, or a copy of them.
+    #[must_use]
+    pub fn is_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.words, &other.words) && Arc::ptr_eq(&self.tables, &other.tables)
+    }
+
     /// True if there are masks of splashes.
     #[must_use]
     pub fn has_splashes(&self) -> bool {

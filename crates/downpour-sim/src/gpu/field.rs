@@ -260,7 +260,7 @@ impl FieldPipeline {
             let uniform = buffers.uniform("splash frame", &frame)?;
             let bound = [&uniform, obstacles.nodes, obstacles.triangles, &of_slice, &counts, &drops, &found];
             let groups = workgroups_for(frame.drops);
-            splashes.push((searched, self.splash.bind(&self.gpu, &bound)?, groups));
+            splashes.push((searched, self.splash.bind(buffers, &bound)?, groups));
         }
         let bounces = match bounce {
             Some(mut bounce) if bounce.query.frame.columns > 0 => {
@@ -296,10 +296,9 @@ impl FieldPipeline {
         to: ListOnGpu<'_>,
     ) -> Result<Search<'_>, GpuSimError> {
         let ListOnGpu { drops, found } = to;
-        let gpu = &self.gpu;
         let room = query.frame.room;
         let uniform = buffers.uniform("field frame", &query.frame)?;
-        let clear = self.clear.bind_at(gpu, [(0, &uniform), (5, drops), (6, found)])?;
+        let clear = self.clear.bind_at(buffers, [(0, &uniform), (5, drops), (6, found)])?;
         let mut find = None;
         if query.frame.columns > 0 {
             let classes = buffers.storage("classes of the field", &query.classes)?;
@@ -307,7 +306,7 @@ impl FieldPipeline {
             let (nodes, thresholds) = (&on.nodes, &on.thresholds);
             let bound = [&uniform, &classes, nodes, thresholds, &drift, drops, found, &on.begins, &on.parts];
             find = Some((
-                self.find.bind(gpu, &bound)?,
+                self.find.bind(buffers, &bound)?,
                 workgroups_for(query.frame.columns.saturating_mul(FIELD_LANES)),
             ));
         }
@@ -319,7 +318,7 @@ impl FieldPipeline {
             let mut bound = obstacles.bindings();
             bound.extend([(6, &uniform), (7, drops), (8, &drift)]);
             let kernel = self.shelter(obstacles.holes.is_some())?;
-            shelter = Some((kernel, kernel.bind_at(gpu, bound)?, workgroups_for(room)));
+            shelter = Some((kernel, kernel.bind_at(buffers, bound)?, workgroups_for(room)));
         }
         Ok(Search { clear: (clear, workgroups_for(room)), find, shelter })
     }
@@ -334,7 +333,6 @@ impl FieldPipeline {
         to: ListOnGpu<'_>,
     ) -> Result<Vec<BoundKernel<'_>>, GpuSimError> {
         let Some(bounds) = obstacles.bounds else { return Ok(Vec::new()) };
-        let gpu = &self.gpu;
         let BounceSearch { end_s, view, query, frame, rows } = search;
         let field_frame = buffers.uniform("field frame of droplets", &query.frame)?;
         let classes = buffers.storage("classes of droplets", &query.classes)?;
@@ -366,14 +364,14 @@ impl FieldPipeline {
         let of_list = [(9, &bounce_frame), (11, &parts), (12, to.drops), (13, to.found)];
         let groups = workgroups_for(frame.parts);
         Ok(vec![
-            (clear, clear.bind_at(gpu, [(11, &parts)])?, [1; 3]),
+            (clear, clear.bind_at(buffers, [(11, &parts)])?, [1; 3]),
             (
                 find,
-                find.bind_at(gpu, of_find)?,
+                find.bind_at(buffers, of_find)?,
                 workgroups_for(query.frame.columns.saturating_mul(BOUNCE_LANES)),
             ),
-            (hit, hit.bind_at(gpu, of_hit)?, groups),
-            (list, list.bind_at(gpu, of_list)?, groups),
+            (hit, hit.bind_at(buffers, of_hit)?, groups),
+            (list, list.bind_at(buffers, of_list)?, groups),
         ])
     }
 

@@ -183,7 +183,7 @@ impl ScenePipeline {
                 let groups = groups(&frame.camera, rows.min(frame.camera.height - first_row));
                 let frame = RenderFrame { first_row, turn, ..*frame };
                 let uniform = buffers.uniform("frame", &frame)?;
-                let bound = self.skylight.bind(&self.gpu, &[&uniform, &found_light, from, to, &picture])?;
+                let bound = self.skylight.bind(buffers, &[&uniform, &found_light, from, to, &picture])?;
                 filters.push((bound, groups));
             }
         }
@@ -217,19 +217,18 @@ impl ScenePipeline {
         let groups = groups(&frame.camera, rows);
         let Some((seen, states)) = self.seen.as_ref().zip(states) else {
             let uniform = buffers.uniform("frame", frame)?;
-            let bound =
-                tracer.bind_at(&self.gpu, scene.buffers(&uniform).into_iter().chain((7..).zip(to)))?;
+            let bound = tracer.bind_at(buffers, scene.buffers(&uniform).into_iter().chain((7..).zip(to)))?;
             return Ok(SceneRays { turns: vec![(tracer, bound)], groups });
         };
         let mut turns = Vec::new();
         for turn in 0..frame.grid * frame.grid {
             let uniform = buffers.uniform("frame", &RenderFrame { turn, ..*frame })?;
             let bound = scene.buffers(&uniform).into_iter().chain([(9, states)]);
-            turns.push((tracer, tracer.bind_at(&self.gpu, bound)?));
+            turns.push((tracer, tracer.bind_at(buffers, bound)?));
         }
         let uniform = buffers.uniform("frame", frame)?;
         let bound = [(0, &uniform), (7, to[0]), (8, to[1]), (9, states)];
-        turns.push((seen, seen.bind_at(&self.gpu, bound)?));
+        turns.push((seen, seen.bind_at(buffers, bound)?));
         Ok(SceneRays { turns, groups })
     }
 }
