@@ -49,7 +49,9 @@ fn sweep() -> Result<(), String> {
         "--test",
         "glass_flow",
     ];
-    run::cargo(&[&lattice[..], &["--", "--ignored"]].concat(), &[])
+    run::cargo(&[&lattice[..], &["--", "--ignored"]].concat(), &[])?;
+    let streets = ["test", "--release", "--locked", "-p", "downpour-street", "--test", "streets"];
+    run::cargo(&[&streets[..], &["--", "--ignored"]].concat(), &[])
 }
 
 /// Formatting, lints, each crate separately, documentation.

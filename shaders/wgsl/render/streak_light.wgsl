@@ -109,9 +109,8 @@ fn streak_light_mixed(
     return (before.direction + after.direction - here.direction * 2.0 - a.second - b.second) * 0.5;
 }
 
-// The patch of a ray's exit.
-fn streak_light_patch(path: StreakPath, row: i32, column: i32, tap: i32, number: u32) -> StreakPatch {
-    let here = streak_light_exit(path, row, column, tap, number);
+// The patch around the exit `here` of a ray.
+fn streak_light_patch(path: StreakPath, row: i32, column: i32, tap: i32, number: u32, here: StreakExit) -> StreakPatch {
     let across = streak_light_change(
         streak_light_exit(path, row, column - 1, tap, number),
         here,
@@ -249,11 +248,20 @@ fn streak_light_view(drop: ScreenDrop, row: f32) -> vec3f {
     return normalize(drop.towards + right * middle.x + up * middle.y);
 }
 
-// Mean radiance of the lamps over all directions.
-fn streak_light_even(first_lamp: u32) -> vec3f {
-    var sum = vec3f(0.0);
+// Which of its lamps light a streak: a bit for each.
+fn streak_light_lit(first_lamp: u32) -> u32 {
+    var lit = 0u;
     for (var k = 0u; k < STREAK_LAMPS; k += 1u) {
-        let lamp = streak_light_lamps[first_lamp + 1u + 2u * k];
+        lit |= select(0u, 1u << k, streak_light_lamps[first_lamp + 1u + 2u * k].w != 0.0);
+    }
+    return lit;
+}
+
+// Mean radiance of the lamps over all directions.
+fn streak_light_even(first_lamp: u32, lit: u32) -> vec3f {
+    var sum = vec3f(0.0);
+    for (var rest = lit; rest > 0u; rest &= rest - 1u) {
+        let lamp = streak_light_lamps[first_lamp + 1u + 2u * firstTrailingBit(rest)];
         if lamp.w > 0.0 {
             sum += lamp.rgb;
         }
@@ -263,9 +271,10 @@ fn streak_light_even(first_lamp: u32) -> vec3f {
 
 // Light of the lamps in the form of Rousseau 2006 where a ray meets the drop: by the normal there, which halves the angle between
 // the eye and what is mirrored.
-fn streak_light_facing(path: StreakPath, first_lamp: u32, view: vec3f, row: i32, column: i32, tap: i32) -> vec3f {
+fn streak_light_facing(path: StreakPath, first_lamp: u32, lit: u32, view: vec3f, row: i32, column: i32, tap: i32) -> vec3f {
     var sum = vec3f(0.0);
-    for (var k = 0u; k < STREAK_LAMPS; k += 1u) {
+    for (var rest = lit; rest > 0u; rest &= rest - 1u) {
+        let k = firstTrailingBit(rest);
         let lamp = streak_light_lamps[first_lamp + 1u + 2u * k];
         if lamp.w >= 0.0 {
             continue;
@@ -289,7 +298,8 @@ fn streak_light_column(path_index: u32, row: u32, column: u32) {
     let first_lamp = path_index * (1u + 2u * STREAK_LAMPS);
     let fine = path.fine;
     let none = streak_light_lamps[first_lamp].rgb;
-    let lost = drops_capture_texel(drops_frame.capture_last, 0, 0) + streak_light_even(first_lamp);
+    let lit = streak_light_lit(first_lamp);
+    let lost = drops_capture_texel(drops_frame.capture_last, 0, 0) + streak_light_even(first_lamp, lit);
     let view = streak_light_view(drop, f32(row) / f32(path.profile_rows - 1u));
     var sums = array<vec3f, 4>(vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0));
     let per_part = path.columns / STREAK_SUMS;
@@ -301,14 +311,15 @@ fn streak_light_column(path_index: u32, row: u32, column: u32) {
         let number = f32((row * path.columns + column) * path.columns + tap);
         let shift = fract(number * vec3f(STREAK_SPOT_FIRST, STREAK_SPOT_SECOND, STREAK_SPOT_THIRD));
         let cell = StreakCell(column, tap, path.columns, fine);
-        var even = none + streak_light_facing(path, first_lamp, view, i32(nearest), i32(column), i32(tap));
+        var even = none + streak_light_facing(path, first_lamp, lit, view, i32(nearest), i32(column), i32(tap));
         var seen = vec3f(0.0);
         var rest = 1.0;
         for (var exit = 0u; exit <= STREAK_EXITS; exit += 1u) {
-            let ray = streak_light_patch(path, i32(nearest), i32(column), i32(tap), exit);
-            if ray.middle.passed == 0u {
+            let here = streak_light_exit(path, i32(nearest), i32(column), i32(tap), exit);
+            if here.passed == 0u {
                 continue;
             }
+            let ray = streak_light_patch(path, i32(nearest), i32(column), i32(tap), exit, here);
             let fraction = clamp(ray.middle.fraction + ray.later.fraction * later, 0.0, 1.0);
             rest -= fraction;
             // The papers' form has what comes through, undimmed, and nothing else.
@@ -317,7 +328,8 @@ fn streak_light_column(path_index: u32, row: u32, column: u32) {
             let width = max(sqrt(size.x * size.y), STREAK_NARROWEST * max(size.x, size.y));
             let direction = streak_light_direction(ray, vec3f(0.0, 0.0, later));
             seen += drops_capture_about(drop.towards, direction, width) * shown;
-            for (var k = 0u; k < STREAK_LAMPS; k += 1u) {
+            for (var left = lit; left > 0u; left &= left - 1u) {
+                let k = firstTrailingBit(left);
                 let lamp = streak_light_lamps[first_lamp + 1u + 2u * k];
                 if lamp.w <= 0.0 {
                     continue;

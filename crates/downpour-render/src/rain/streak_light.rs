@@ -226,10 +226,14 @@ impl Streak<'_> {
         self.exits[((row * columns + column) * columns + tap) as usize][number]
     }
 
-    /// The patch of a ray's exit.
-    fn streak_light_patch(&self, [row, column, tap]: [i32; 3], number: usize) -> StreakPatch {
+    /// The patch around the exit `here` of a ray.
+    fn streak_light_patch(
+        &self,
+        [row, column, tap]: [i32; 3],
+        number: usize,
+        here: StreakExit,
+    ) -> StreakPatch {
         let at = |r: i32, c: i32, t: i32| self.streak_light_exit([row + r, column + c, tap + t], number);
-        let here = at(0, 0, 0);
         let across = streak_light_change(&at(0, -1, 0), &here, &at(0, 1, 0));
         let along = streak_light_change(&at(0, 0, -1), &here, &at(0, 0, 1));
         let later = streak_light_change(&at(-1, 0, 0), &here, &at(1, 0, 0));
@@ -244,23 +248,30 @@ impl Streak<'_> {
         }
     }
 
-    /// The lamps, their irradiances and directions.
-    fn lamps(&self) -> impl Iterator<Item = (Vec4, Vec3)> {
+    /// Which of its lamps light a streak: a bit for each.
+    fn streak_light_lit(&self) -> u32 {
         let (pairs, _) = self.lamps[1..].as_chunks::<2>();
-        pairs.iter().map(|&[lamp, towards]| (Vec4::from(lamp), Vec4::from(towards).truncate()))
+        pairs.iter().zip(0..).fold(0, |lit, ([lamp, _], k)| lit | u32::from(lamp[3] != 0.0) << k)
+    }
+
+    /// These lamps, their irradiances and directions.
+    fn lamps(&self, lit: u32) -> impl Iterator<Item = (Vec4, Vec3)> {
+        let (pairs, _) = self.lamps[1..].as_chunks::<2>();
+        let lit = pairs.iter().zip(0..).filter(move |(_, k)| lit >> k & 1 == 1);
+        lit.map(|(&[lamp, towards], _)| (Vec4::from(lamp), Vec4::from(towards).truncate()))
     }
 
     /// Mean radiance of the lamps over all directions.
-    fn streak_light_even(&self) -> Vec3 {
-        let lamps = self.lamps().filter(|(lamp, _)| lamp.w > 0.0);
+    fn streak_light_even(&self, lit: u32) -> Vec3 {
+        let lamps = self.lamps(lit).filter(|(lamp, _)| lamp.w > 0.0);
         lamps.fold(Vec3::ZERO, |sum, (lamp, _)| sum + lamp.truncate()) * (0.125 / STREAK_QUARTER)
     }
 
     /// Light of the lamps in the form of Rousseau 2006 where a ray meets the drop: by the normal there, which halves the angle
     /// between the eye and what is mirrored.
-    fn streak_light_facing(&self, view: Vec3, at: [i32; 3]) -> Vec3 {
+    fn streak_light_facing(&self, lit: u32, view: Vec3, at: [i32; 3]) -> Vec3 {
         let mut sum = Vec3::ZERO;
-        for (lamp, towards) in self.lamps().filter(|(lamp, _)| lamp.w < 0.0) {
+        for (lamp, towards) in self.lamps(lit).filter(|(lamp, _)| lamp.w < 0.0) {
             let mirrored = self.streak_light_exit(at, 0).direction - view;
             let normal = mirrored / mirrored.dot(mirrored).max(DROP_GLINT_TINY).sqrt();
             sum += lamp.truncate()
@@ -277,7 +288,8 @@ impl Streak<'_> {
         let nearest = ((at + 0.5) as u32).min(path.rows - 1);
         let later = at - nearest as f32;
         let none = Vec4::from(self.lamps[0]).truncate();
-        let lost = self.view.drops_capture_texel(frame.capture_last, 0, 0) + self.streak_light_even();
+        let lit = self.streak_light_lit();
+        let lost = self.view.drops_capture_texel(frame.capture_last, 0, 0) + self.streak_light_even(lit);
         let view = streak_light_view(self.drop, row as f32 / (path.profile_rows - 1) as f32);
         let mut made = [[[0.0; 4]; SUMS]; FINE];
         let mut sums = [Vec3::ZERO; FINE];
@@ -293,14 +305,15 @@ impl Streak<'_> {
                 (Vec3::new(STREAK_SPOT_FIRST, STREAK_SPOT_SECOND, STREAK_SPOT_THIRD) * number).fract();
             let nodes = [nearest, column, tap].map(|n| n as i32);
             let cell = StreakCell { column, tap, columns: path.columns, fine: path.fine };
-            let mut even = none + self.streak_light_facing(view, nodes);
+            let mut even = none + self.streak_light_facing(lit, view, nodes);
             let mut seen = Vec3::ZERO;
             let mut rest = 1.0f32;
             for exit in 0..=STREAK_EXITS as usize {
-                let ray = self.streak_light_patch(nodes, exit);
-                if ray.middle.passed == 0 {
+                let here = self.streak_light_exit(nodes, exit);
+                if here.passed == 0 {
                     continue;
                 }
+                let ray = self.streak_light_patch(nodes, exit, here);
                 let fraction = (ray.middle.fraction + ray.later.fraction * later).clamp(0.0, 1.0);
                 rest -= fraction;
                 // The papers' form has what comes through, undimmed, and nothing else.
@@ -313,7 +326,7 @@ impl Streak<'_> {
                 let width = (size.x * size.y).sqrt().max(STREAK_NARROWEST * size.x.max(size.y));
                 let direction = streak_light_direction(&ray, Vec3::new(0.0, 0.0, later));
                 seen += self.view.drops_capture_about(self.drop.towards.into(), direction, width) * shown;
-                for (lamp, towards) in self.lamps().filter(|(lamp, _)| lamp.w > 0.0) {
+                for (lamp, towards) in self.lamps(lit).filter(|(lamp, _)| lamp.w > 0.0) {
                     let time = [later, rays_per_row];
                     let spots = streak_light_spot(&ray, time, size, towards, lamp.w, cell, shift);
                     for (sum, spot) in sums.iter_mut().zip(spots) {
