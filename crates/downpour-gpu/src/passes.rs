@@ -164,22 +164,20 @@ impl FramePasses {
     ///
     /// # Errors
     /// As [`Gpu::create`].
-    pub fn end(self) -> Result<(FrameTimes, Option<wgpu::Buffer>), GpuError> {
-        let Self { gpu, clock, times, mut recorded } = self;
+    pub fn end(mut self) -> Result<(FrameTimes, Option<wgpu::Buffer>), GpuError> {
         let mut ticks = None;
-        if let Some(clock) = clock.filter(|clock| clock.used > 0) {
-            let commands = gpu.create("times of passes", 0, |device| {
+        if let Some(clock) = self.clock.take().filter(|clock| clock.used > 0) {
+            let commands = self.gpu.create("times of passes", 0, |device| {
                 let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
                 encoder.resolve_query_set(&clock.queries, 0..2 * clock.used, &clock.ticks, 0);
                 encoder.finish()
             })?;
-            recorded.push(commands);
+            self.recorded.push(commands);
             ticks = Some(clock.ticks);
         }
-        if !recorded.is_empty() {
-            gpu.submit_commands(recorded);
-        }
-        Ok((FrameTimes { times, period: gpu.queue().get_timestamp_period().into() }, ticks))
+        self.submit_recorded();
+        let period = self.gpu.queue().get_timestamp_period().into();
+        Ok((FrameTimes { times: self.times, period }, ticks))
     }
 }
 

@@ -30,7 +30,7 @@ use downpour_trace::scene::SceneView;
 use downpour_trace::sky_light::SkyLight;
 use glam::{Affine3A, DVec3, Vec3};
 
-use crate::shower::{fall_speed, splashes};
+use crate::shower::{drops_among, fall_speed, splashes};
 
 pub use downpour_render::host::DepthRange;
 pub use error::RainError;
@@ -197,16 +197,8 @@ impl Rain {
     /// [`RainError`] for a view outside its ranges.
     pub fn drops(&self, view: &RainView, size: [u32; 2]) -> Result<VisibleDrops, RainError> {
         let (seen, obstacles) = (self.view(view, size)?, self.obstacles());
-        let mut visible = self.field.visible_among(&obstacles, &seen, view.time_s)?;
-        let least = visible.resolved.least_pixels;
-        let (splashes, bounce) = self.of_impacts(&seen, least, view.time_s);
-        if let Some(bounce) = bounce {
-            visible.drops.extend(self.field.bounced(&obstacles, &seen, least, view.time_s, bounce)?);
-        }
-        if let Some(splashes) = splashes {
-            visible.drops.extend(self.field.splashes(&obstacles, &seen, view.time_s, splashes)?);
-        }
-        Ok(visible)
+        let impacts = self.of_impacts(&seen, view.time_s)?;
+        Ok(drops_among(&self.field, &obstacles, &seen, view.time_s, impacts)?)
     }
 
     /// What stops drops.
@@ -219,22 +211,22 @@ impl Rain {
         }
     }
 
-    /// Splashes and rebounds of a frame, of droplets of so many pixels and more, as far as the device finds them.
+    /// Splashes and rebounds of a frame, as far as the device finds them.
     fn of_impacts(
         &self,
         view: &View,
-        least_pixels: f64,
         time_s: f64,
-    ) -> (Option<&SplashOptions>, Option<&Bounce>) {
+    ) -> Result<(Option<&SplashOptions>, Option<&Bounce>), RainError> {
         if !self.has_obstacles {
-            return (None, None);
+            return Ok((None, None));
         }
         let (field, obstacles) = (&self.field, self.obstacles());
+        let least_pixels = field.resolved(view, time_s, self.most_drops)?.least_pixels;
         let fits = |splashes: &&SplashOptions| splashes.fits_device(field, view, time_s, &obstacles);
         let bounce = Some(&self.settings.bounce).filter(|bounce| {
             bounce.fraction > 0.0 && bounce.fits_device(field, view, least_pixels, time_s, &obstacles)
         });
-        (self.splashes.as_ref().filter(fits), bounce)
+        Ok((self.splashes.as_ref().filter(fits), bounce))
     }
 
     /// Records the rain of a frame: it is blended into the color texture when `encoder` is submitted.
@@ -263,8 +255,7 @@ impl Rain {
             bounds: bounds.map(|root| [Vec3::from(root.low), Vec3::from(root.high)]),
             origin: DVec3::ZERO,
         };
-        let least = self.field.resolved(&seen, view.time_s, self.most_drops)?.least_pixels;
-        let (splashes, bounce) = self.of_impacts(&seen, least, view.time_s);
+        let (splashes, bounce) = self.of_impacts(&seen, view.time_s)?;
         let (splashes, bounce) = (splashes.copied(), bounce.copied());
         let on_gpu = (&self.field, &mut self.field_on_gpu);
         let search = FieldSearch {

@@ -12,6 +12,7 @@ use downpour_drop::air::Air;
 use downpour_drop::distribution::{DropSizeDistribution, ExtinctionEfficiency};
 use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_drop::splash::SplashLaw;
+use downpour_sim::SimError;
 use downpour_sim::field::{FallingDrop, RainField, VisibleDrops};
 use downpour_sim::impacts::SplashOptions;
 use downpour_sim::resolved::Resolved;
@@ -193,13 +194,8 @@ impl Shower {
             Form::Closed(field) => {
                 let view = View { max_drops: self.weather.rain.max_drops, ..frame_scene.view()? };
                 let obstacles = obstacles(frame_scene);
-                let mut visible = field.visible_among(&obstacles, &view, time_s)?;
-                let least = visible.resolved.least_pixels;
-                visible.drops.extend(field.bounced(&obstacles, &view, least, time_s, &self.bounce)?);
-                if let Some(splashes) = &self.splashes {
-                    visible.drops.extend(field.splashes(&obstacles, &view, time_s, splashes)?);
-                }
-                visible
+                let impacts = (self.splashes.as_ref(), Some(&self.bounce));
+                drops_among(field, &obstacles, &view, time_s, impacts)?
             }
             Form::Stepped(stepped) => stepped.at(scenery, frame_scene, time_s, passed)?,
         };
@@ -332,6 +328,25 @@ impl Shower {
             Form::Stepped(stepped) => Ok(stepped.measured_rate_mm_h()),
         }
     }
+}
+
+/// Drops of a rain in closed form that a picture shows at a time in s, with droplets that rebounded and splashes, in this order.
+pub(crate) fn drops_among(
+    field: &RainField,
+    obstacles: &Obstacles<'_>,
+    view: &View,
+    time_s: f64,
+    (splashes, bounce): (Option<&SplashOptions>, Option<&Bounce>),
+) -> Result<VisibleDrops, SimError> {
+    let mut visible = field.visible_among(obstacles, view, time_s)?;
+    if let Some(bounce) = bounce {
+        let least = visible.resolved.least_pixels;
+        visible.drops.extend(field.bounced(obstacles, view, least, time_s, bounce)?);
+    }
+    if let Some(splashes) = splashes {
+        visible.drops.extend(field.splashes(obstacles, view, time_s, splashes)?);
+    }
+    Ok(visible)
 }
 
 /// What stops drops in a scene.
