@@ -6,3 +6,4 @@ pub mod enter;
 pub mod field;
 pub mod splash;
 pub mod step;
+pub mod step_list;

@@ -3,10 +3,10 @@
 use crate::{Kernel, Module};
 
 /// Every module of this file.
-pub const MODULES: &[&Module] = &[&WIND_CONSTANTS, &PRIMITIVE, &TURBULENCE, &FIELD];
+pub const MODULES: &[&Module] = &[&WIND_CONSTANTS, &PRIMITIVE, &TURBULENCE, &FIELD, &FIELD_SPREAD];
 
 /// Every kernel of this file.
-pub const KERNELS: &[&Kernel] = &[&FIELD_KERNEL];
+pub const KERNELS: &[&Kernel] = &[&FIELD_KERNEL, &FIELD_SPREAD_CLEAR_KERNEL, &FIELD_SPREAD_KERNEL];
 
 shared_constants! {
     /// Types of the primitives, and factors of their formulas. The type of a line form includes its core: plain for
@@ -61,3 +61,18 @@ pub static FIELD: Module = Module {
 
 /// One invocation per cell.
 pub static FIELD_KERNEL: Kernel = Kernel { entry: "main_wind_field", module: &FIELD, workgroup: [4, 4, 4] };
+
+/// How much the wind differs about a position. Twin: `downpour_wind::field_spread`.
+pub static FIELD_SPREAD: Module = Module {
+    path: "wind/field_spread.wgsl",
+    wgsl: include_str!("../wgsl/wind/field_spread.wgsl"),
+    uses: &[&FIELD],
+};
+
+/// One workgroup.
+pub static FIELD_SPREAD_CLEAR_KERNEL: Kernel =
+    Kernel { entry: "main_wind_field_spread_clear", module: &FIELD_SPREAD, workgroup: [8, 1, 1] };
+
+/// One invocation per cell about the position.
+pub static FIELD_SPREAD_KERNEL: Kernel =
+    Kernel { entry: "main_wind_field_spread", module: &FIELD_SPREAD, workgroup: [4, 4, 4] };

@@ -38,6 +38,7 @@ use downpour_sim::field::frame::{FieldClass, FieldFrame, ShelterFrame};
 use downpour_sim::impacts::bounce_frame::{BounceFrame, BounceParts};
 use downpour_sim::impacts::splash_frame::SplashFrame;
 use downpour_sim::step::{StepEvent, StepFrame};
+use downpour_sim::step_list::StepListFrame;
 use downpour_sim::volume::{VolumeEye, VolumeFrustum};
 use downpour_specimen::gpu::{CameraUniform, LampUniform, SpecimenUniform, StreakUniform};
 use downpour_tests::signature::parse;
@@ -45,6 +46,7 @@ use downpour_trace::data::{RenderCorner, RenderFrame};
 use downpour_trace::trace::{TraceAmbient, TraceSlot};
 use downpour_wind::WindTurbulenceMode;
 use downpour_wind::field::WindFieldGrid;
+use downpour_wind::field_spread::WindFieldSpreadFrame;
 
 /// A host struct: its WGSL name, the module that declares it, its size, and its fields by their WGSL names.
 struct Host {
@@ -168,6 +170,10 @@ fn hosts() -> Vec<Host> {
             events, bounce, restitution, grip, bounced_size, bounced_time, gauge_height, gauge, boxes, unused_1, gauge_area,
             frustum, frustum_before, tangents, lags, oldest, candidates, regions, regions_first, sizes_first, pieces,
             piece, unused_2),
+        host!(StepListFrame as "StepListFrame" in &sim::step_list::STEP_LIST,
+            eye, after, velocity, half_shutter, turning, nearest, center, farthest, size, volume, sides, pane, seed, range,
+            bounce, restitution, grip, bounced_size, step, per_second, count, first, known, room, unused_1, unused_2,
+            unused_3),
         host!(StepEvent as "StepEvent" in &sim::step::STEP, position, diameter, velocity, drop),
         host!(EnterRegion as "EnterRegion" in &sim::enter::ENTER,
             face, bin, first, first_of_bin, low, high, begin, end, slope, width, middle, unused),
@@ -176,6 +182,7 @@ fn hosts() -> Vec<Host> {
         host!(VolumeEye as "VolumeEye" in &sim::step::VOLUME,
             position, half_width, right, half_height, up, unused_1, forward, unused_2),
         host!(WindFieldGrid as "WindFieldGrid" in &wind::FIELD, low, primitives, cell, modes, per_cell, size),
+        host!(WindFieldSpreadFrame as "WindFieldSpreadFrame" in &wind::FIELD_SPREAD, grid, at, reach),
         host!(WindTurbulenceMode as "WindTurbulenceMode" in &wind::TURBULENCE, wave, phase, amplitude),
         host!(GlassSizeRow as "GlassSizeRow" in &lattice::glass::SIZE,
             radius, hold, slow, air, sphere, loss, ridge, ahead),

@@ -11,7 +11,7 @@ use downpour_tests::signature::all_functions;
 use downpour_tests::sources::rust_files;
 
 /// WGSL functions whose work a Rust function of another name does, and where. Kernel-level cases compare the results.
-const ELSEWHERE: [(&[&str], &str); 11] = [
+const ELSEWHERE: [(&[&str], &str); 12] = [
     (
         &[
             "puddle_is_finite",
@@ -57,6 +57,7 @@ const ELSEWHERE: [(&[&str], &str); 11] = [
         &["bounce_hit_part", "bounce_listed", "bounce_outside", "bounce_shows"],
         "the CPU lists droplets in f64, in the world (the loop of RainField::bounced, FallingDrop::beyond, View::shows)",
     ),
+    (&["step_list_add"], "the CPU collects drops in a list (downpour_sim::step_list)"),
     (&["enter_find", "enter_region"], "downpour_sim::region has the boxes as values, the GPU as rows"),
     (&["mask_model_sample"], "part of mask_model_texel in downpour_mask::model"),
     (&["path_nothing"], "the constant ViewPath::NOTHING"),

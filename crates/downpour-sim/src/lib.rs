@@ -7,7 +7,7 @@
 //! - [`simulation`]: rain step by step in a volume that follows the camera: any wind, bounces, impacts; on a GPU as
 //!   well (`gpu`, feature `wgpu`);
 //! - [`collision`]: collision map of the surfaces that its drops hit;
-//! - [`motion`], [`volume`], [`step`], [`enter`]: parts of a step;
+//! - [`motion`], [`volume`], [`step`], [`enter`]: parts of a step; [`step_list`]: the drops of a state that a picture shows;
 //! - [`view`]: drops that a camera can resolve; [`resolved`]: limits of the list of drops for a picture.
 //!
 //! Units are SI; rates are in mm/h where the name says so. Axes are those of glTF: right-handed, +Y up.
@@ -27,7 +27,6 @@ mod frustum;
 pub mod gpu;
 pub mod impacts;
 mod inflow;
-mod list;
 pub mod motion;
 mod options;
 mod plan;
@@ -38,6 +37,7 @@ pub mod resolved;
 pub mod shelter;
 pub mod simulation;
 pub mod step;
+pub mod step_list;
 pub mod view;
 pub mod volume;
 

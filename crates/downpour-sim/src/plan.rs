@@ -155,9 +155,25 @@ impl Plan {
         self.bins.iter().map(of).sum()
     }
 
-    /// Number of the step at a time after the state, s.
-    pub(crate) fn step_after(&self, time_s: f64) -> u32 {
-        self.step.wrapping_add(1).wrapping_add((time_s / self.time_s).max(0.0) as u32)
+    /// Number of the step after the state, and the duration of the last one, s.
+    pub(crate) fn next_step(&self) -> (u32, f64) {
+        (self.step.wrapping_add(1), self.time_s)
+    }
+
+    /// The volume's `STEP_VOLUME_*`, its size and its center about a view, m.
+    pub(crate) fn volume(&self, view: &View) -> (u32, DVec3, DVec3) {
+        match self.options.volume {
+            SimVolume::Box { size_m } => {
+                (STEP_VOLUME_BOX, DVec3::from(size_m), box_center(view, DVec3::from(size_m)))
+            }
+            SimVolume::View => (STEP_VOLUME_VIEW, DVec3::ONE, view.eye),
+            SimVolume::ImSung => (STEP_VOLUME_AREA, DVec3::ONE, view.eye),
+            SimVolume::Tariq { size_m } => (STEP_VOLUME_TARIQ, DVec3::from(size_m), view.eye),
+            SimVolume::Cylinder { base_m, radius_m, height_m } => {
+                let middle = DVec3::from(base_m) + DVec3::Y * (0.5 * height_m);
+                (STEP_VOLUME_CYLINDER, DVec3::new(radius_m, height_m, 1.0), middle)
+            }
+        }
     }
 
     /// Limits of the list of drops that a picture can show.
@@ -244,18 +260,7 @@ impl Plan {
     /// Frame of a step of duration 0.
     pub(crate) fn standing(&self, air: AirAtEye) -> StepFrame {
         let Self { options, view, frustum, origin, .. } = self;
-        let (volume, size, center) = match options.volume {
-            SimVolume::Box { size_m } => {
-                (STEP_VOLUME_BOX, DVec3::from(size_m), box_center(view, DVec3::from(size_m)))
-            }
-            SimVolume::View => (STEP_VOLUME_VIEW, DVec3::ONE, view.eye),
-            SimVolume::ImSung => (STEP_VOLUME_AREA, DVec3::ONE, view.eye),
-            SimVolume::Tariq { size_m } => (STEP_VOLUME_TARIQ, DVec3::from(size_m), view.eye),
-            SimVolume::Cylinder { base_m, radius_m, height_m } => {
-                let middle = DVec3::from(base_m) + DVec3::Y * (0.5 * height_m);
-                (STEP_VOLUME_CYLINDER, DVec3::new(radius_m, height_m, 1.0), middle)
-            }
-        };
+        let (volume, size, center) = self.volume(view);
         let gauge = options.gauge.unwrap_or_default();
         let sizes_first = MOTION_TABLE_LAST + 1;
         StepFrame {

@@ -22,13 +22,13 @@ use crate::collision::CollisionMap;
 use crate::enter::EnterRegion;
 use crate::field::VisibleDrops;
 use crate::fill::fill;
-use crate::list::{Listing, listed};
 use crate::motion::{motion_diameter, motion_settled, motion_table, speed_of};
 use crate::options::PIECE;
 pub use crate::options::{Bounce, Drag, Gauge, SimVolume, SimulationOptions};
 use crate::plan::{AirAtEye, Plan, Turn, lags};
 use crate::population::{Population, affordable_pixels, bins, initial_position};
 use crate::step::{StepCaught, StepDrop, StepEvent, StepFrame, StepMade, StepWorld, step_word};
+use crate::step_list::{Listing, listed};
 use crate::view::View;
 
 /// Number of regions of one work item.

@@ -1,11 +1,12 @@
 //! Wind in the cells of a box (Rousseau 2008, 3.2 and 5.1.2). Twin of `shaders/wgsl/wind/field.wgsl`.
 
-use glam::{DVec3, UVec3, Vec3, Vec4};
+use glam::{DVec3, UVec3, Vec3};
 use rayon::prelude::*;
 
 use crate::design::WindPrimitive;
 use crate::error::WindError;
 pub use crate::field_grid::{WindFieldGrid, wind_field_center};
+use crate::field_spread::{wind_field_spread, wind_field_spread_wind};
 use crate::grid::WindGrid;
 use crate::mask::WindMask;
 use crate::matrix::WindMatrix;
@@ -142,48 +143,14 @@ impl WindField {
     /// the nearest point between them.
     #[must_use]
     pub fn sample(&self, at: Vec3) -> Vec3 {
-        let position = wind_field_locate(&self.uniform, at);
-        let corners = std::array::from_fn(|k| {
-            let index = wind_field_index(&self.uniform, wind_field_corner(&position, k as u32));
-            // The cell is within the grid.
-            self.cells.get(index as usize).map_or(Vec3::ZERO, |&[x, y, z, _]| Vec3::new(x, y, z))
-        });
-        wind_field_mix(&corners, position.fraction)
+        wind_field_spread_wind(&self.uniform, &self.cells, at)
     }
 
     /// Bounds on the difference between the wind within `reach` meters of a position and the wind at the position: per
     /// meter of distance, 1/s, and in total, m/s.
     #[must_use]
     pub fn spread(&self, at: Vec3, reach: f32) -> [f32; 2] {
-        let [low, high] = [-reach, reach].map(|way| wind_field_locate(&self.uniform, at + Vec3::splat(way)));
-        let (first, last) = (low.cell, high.next);
-        let there = self.sample(at);
-        let steps = [(UVec3::X, 0), (UVec3::Y, 1), (UVec3::Z, 2)];
-        // Differences along each axis per m, and from the position.
-        let of_layer = |z: u32| {
-            let mut found = Vec4::ZERO;
-            for y in first.y..=last.y {
-                for x in first.x..=last.x {
-                    let cell = UVec3::new(x, y, z);
-                    let here = self.cell_velocity(cell);
-                    found.w = found.w.max((here - there).length());
-                    for (step, axis) in steps {
-                        if cell[axis] < last[axis] {
-                            let rise = (self.cell_velocity(cell + step) - here).length();
-                            found[axis] = found[axis].max(rise * self.uniform.per_cell[axis]);
-                        }
-                    }
-                }
-            }
-            found
-        };
-        let found = (first.z..=last.z).into_par_iter().map(of_layer).reduce(|| Vec4::ZERO, Vec4::max);
-        [found.truncate().length(), found.w]
-    }
-
-    fn cell_velocity(&self, cell: UVec3) -> Vec3 {
-        let index = wind_field_index(&self.uniform, cell) as usize;
-        self.cells.get(index).map_or(Vec3::ZERO, |&[x, y, z, _]| Vec3::new(x, y, z))
+        wind_field_spread(&self.uniform, &self.cells, at, reach)
     }
 
     /// The grid.

@@ -7,6 +7,7 @@
 //! - [`matrix`]: the paper's 3x3 matrix of a primitive, encoded and decoded;
 //! - [`primitive`]: the velocity of a primitive, with a core that keeps it finite;
 //! - [`grid`], [`mask`], [`field`]: the sum in the cells of a box, 0 inside objects, trilinear between the cells;
+//! - [`field_spread`]: how much the wind of a field differs about a position;
 //! - [`timeline`], [`part`]: parameters with keys over time;
 //! - [`gusts`], [`turbulence`]: fluctuations in time and in space, with the spectra of Kaimal and von Karman;
 //! - [`wind`]: the complete wind; [`uniform`]: uniform wind, and the response of drops to it;
@@ -39,6 +40,7 @@ pub mod design;
 mod error;
 pub mod field;
 mod field_grid;
+pub mod field_spread;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
 pub mod grid;

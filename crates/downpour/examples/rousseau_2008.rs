@@ -12,7 +12,7 @@ use std::error::Error;
 use downpour::drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour::gpu::{AdapterChoice, ComputeKernel, Gpu, GpuOptions, LimitSet};
 use downpour::sim::collision::{CollisionMap, CollisionOptions};
-use downpour::sim::gpu::{GpuCollisionMap, GpuSimulation, GpuStepInput};
+use downpour::sim::gpu::{CollisionMapOnGpu, GpuSimulation, GpuStepInput};
 use downpour::sim::simulation::{SimVolume, SimulationOptions, StepInput};
 use downpour::sim::view::View;
 use downpour::wind::gpu::GpuWindField;
@@ -108,7 +108,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{}", gpu.adapter().name);
     let (field, map) = (field()?, map()?);
     let cells = gpu.storage_buffer("cells", field.cells())?;
-    let on_gpu = GpuCollisionMap::from_cpu(&gpu, &map)?;
+    let on_gpu = CollisionMapOnGpu::upload(&gpu, &map)?;
     let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 100.0)?;
     // As fine as it takes for as many drops as are asked for.
     let view = View { eye: DVec3::new(0.0, 2.0, 0.0), least_pixels: 1.0e-3, ..View::default() };

@@ -290,8 +290,11 @@ impl Rain {
         let made =
             self.host.prepare(pool, &textures.on_gpu(), &plate_frame, &environment_frame, &environment)?;
         let plate = PlateOnGpu { pixels: made.pixels(), environment: &environment, lighting: &lighting };
-        let falling =
-            FallingOnGpu { drops: found.drops(), count: found.places(), frequencies: &self.frequencies };
+        let falling = FallingOnGpu {
+            drops: found.list().drops(),
+            count: found.list().places(),
+            frequencies: &self.frequencies,
+        };
         let masks = (&self.masks_on_gpu, &self.masks);
         let pass = self.rains.prepare_falling(pool, &plate, masks, (&rain, &options), &lights, falling)?;
         let mut stages = vec![[made.dispatches(), pass.environment()].concat()];
@@ -310,7 +313,7 @@ impl Rain {
         let blend = HostBlendFrame { width: size[0], scale: 1.0 / textures.radiance_scale, unused: [0; 2] };
         self.host.encode_blend(pool, encoder, textures.color, pass.layer_buffer(), &blend)?;
         Ok(RainStats {
-            room: found.room(),
+            room: found.list().room(),
             columns: found.columns(),
             least_pixels: found.resolved().least_pixels,
             buffers_made: pool.made(),

@@ -411,13 +411,21 @@ impl Renderer {
         time_s: f64,
         told: &mut dyn FnMut(Progress),
     ) -> Result<Drops, RendererError> {
-        if let Some(max_room) = self.drawer.max_drops()
-            && let Some(view) = self.shower.view_at(frame_scene, time_s, max_room)?
-        {
-            return Ok(Drops::OfDevice(Box::new(view)));
-        }
         let scenery = scenery(&self.first, &self.weather, &self.loaded);
         let mut passed = |done, all| told(Progress { what: "rain: step", parts: [done, all] });
+        #[cfg(feature = "wgpu")]
+        if let Some(device) = self.drawer.finder() {
+            match self.shower.on_device(device, &*scenery, frame_scene, time_s, &mut passed) {
+                Ok(view) => return Ok(Drops::OfDevice(Box::new(view))),
+                Err(error) => {
+                    // What is too much for the device the CPU does for it.
+                    let error = RendererError::from(error);
+                    if !error.is_too_much_for_gpu() {
+                        return Err(error);
+                    }
+                }
+            }
+        }
         Ok(Drops::Listed(self.shower.at(&*scenery, frame_scene, time_s, &mut passed)?))
     }
 

@@ -30,6 +30,8 @@ use dripping::Dripping;
 pub use error::ShowerError;
 pub use scenery::{MovingEye, MovingScenery, Scenery, Still};
 use stepped::Stepped;
+#[cfg(feature = "wgpu")]
+pub use stepped::SteppedPicture;
 
 /// Method by which the drops are found.
 #[derive(Clone, Debug)]
@@ -38,11 +40,11 @@ enum Form {
     Stepped(Box<Stepped>),
 }
 
-/// The part of a rain in closed form that a picture shows, for a device that finds its drops.
+/// The part of a rain that a picture shows, for a device that finds its drops.
 #[derive(Clone, Debug)]
 pub struct ShowerView {
     /// The rain.
-    pub field: Arc<RainField>,
+    pub rain: ShowerRain,
     /// Time of the picture, s.
     pub time_s: f64,
     /// The picture, in the world.
@@ -53,10 +55,25 @@ pub struct ShowerView {
     pub pane: Option<PanePlane>,
     /// Drops that drip, and splashes and droplets that rebound unless the device finds them, in the world: these are found already.
     pub droplets: Vec<FallingDrop>,
-    /// Splashes that the device is to find.
-    pub splashes: Option<SplashOptions>,
-    /// Rebounds whose droplets the device is to find.
-    pub bounce: Option<Bounce>,
+}
+
+/// A rain whose drops a device finds.
+#[derive(Clone, Debug)]
+pub enum ShowerRain {
+    /// In closed form.
+    Closed {
+        /// The rain.
+        field: Arc<RainField>,
+        /// Splashes that the device is to find.
+        splashes: Option<SplashOptions>,
+        /// Rebounds whose droplets the device is to find.
+        bounce: Option<Bounce>,
+        /// Drops that the device has room for.
+        max_room: u32,
+    },
+    /// Step by step, on the device.
+    #[cfg(feature = "wgpu")]
+    Stepped(SteppedPicture),
 }
 
 /// The rain of a weather.
@@ -220,7 +237,20 @@ impl Shower {
         time_s: f64,
         max_room: u32,
     ) -> Result<Option<ShowerView>, ShowerError> {
-        let Form::Closed(field) = &self.form else { return Ok(None) };
+        match &self.form {
+            Form::Closed(field) => Ok(Some(self.closed_view(field, frame_scene, time_s, max_room)?)),
+            Form::Stepped(_) => Ok(None),
+        }
+    }
+
+    /// What a device is asked for that finds drops in closed form.
+    fn closed_view(
+        &self,
+        field: &Arc<RainField>,
+        frame_scene: &FrameScene,
+        time_s: f64,
+        max_room: u32,
+    ) -> Result<ShowerView, ShowerError> {
         // Room for a quarter more is kept.
         let max_drops = self.weather.rain.max_drops.min(max_room / 5 * 4);
         let view = View { max_drops, ..frame_scene.view()? };
@@ -245,8 +275,64 @@ impl Shower {
         if let Some(pane) = &pane {
             keep_outside(&mut droplets, pane, &view);
         }
-        let field = Arc::clone(field);
-        Ok(Some(ShowerView { field, time_s, view, resolved, pane, droplets, splashes: on_device, bounce }))
+        let rain = ShowerRain::Closed { field: Arc::clone(field), splashes: on_device, bounce, max_room };
+        Ok(ShowerView { rain, time_s, view, resolved, pane, droplets })
+    }
+
+    /// What a device is asked for that finds the drops of [`Shower::at`]: drops in closed form, of which it has room for `max_room`, or
+    /// those that it steps. `passed` as there.
+    ///
+    /// # Errors
+    /// As [`Shower::at`]; [`ShowerError::Gpu`].
+    #[cfg(feature = "wgpu")]
+    pub fn on_device(
+        &mut self,
+        (gpu, max_room): (&downpour_gpu::Gpu, u32),
+        scenery: &dyn Scenery,
+        frame_scene: &FrameScene,
+        time_s: f64,
+        passed: &mut dyn FnMut(u32, u32),
+    ) -> Result<ShowerView, ShowerError> {
+        let pane = pane_plane(&self.weather, &frame_scene.viewpoint)?;
+        let stepped = match &mut self.form {
+            Form::Closed(field) => {
+                let field = Arc::clone(field);
+                return self.closed_view(&field, frame_scene, time_s, max_room);
+            }
+            Form::Stepped(stepped) => stepped,
+        };
+        let (view, picture) = stepped.on_device(gpu, scenery, frame_scene, time_s, passed)?;
+        let resolved = picture.resolved();
+        let drips = View { max_drops: self.weather.rain.max_drops, ..frame_scene.view()? };
+        let mut droplets = self.drips(frame_scene, &drips, resolved.least_pixels, time_s)?;
+        if let Some(pane) = &pane {
+            keep_outside(&mut droplets, pane, &view);
+        }
+        Ok(ShowerView { rain: ShowerRain::Stepped(picture), time_s, view, resolved, pane, droplets })
+    }
+
+    /// The drops of a device a little later than those of `shown`, at `time_s`, as a picture of part of its exposure shows them.
+    ///
+    /// # Errors
+    /// As [`Shower::at`].
+    pub(crate) fn later(
+        &self,
+        shown: &ShowerView,
+        frame_scene: &FrameScene,
+        time_s: f64,
+    ) -> Result<ShowerView, ShowerError> {
+        match &shown.rain {
+            #[cfg(feature = "wgpu")]
+            ShowerRain::Stepped(picture) => {
+                let least_pixels = shown.view.least_pixels;
+                let view = View { least_pixels, ..frame_scene.view()? };
+                let rain = ShowerRain::Stepped(picture.later(time_s - shown.time_s));
+                Ok(ShowerView { rain, view, time_s, ..shown.clone() })
+            }
+            ShowerRain::Closed { field, max_room, .. } => {
+                self.closed_view(field, frame_scene, time_s, *max_room)
+            }
+        }
     }
 
     /// The wind that the drops feel at a time in seconds, in its cells and relative to the scene's origin: none blows in
@@ -325,7 +411,7 @@ impl Shower {
     pub fn measured_rate_mm_h(&self, frame_scene: &FrameScene, time_s: f64) -> Result<f64, ShowerError> {
         match &self.form {
             Form::Closed(field) => Ok(field.measured_rate_mm_h(frame_scene.view()?.eye, time_s)?),
-            Form::Stepped(stepped) => Ok(stepped.measured_rate_mm_h()),
+            Form::Stepped(stepped) => stepped.measured_rate_mm_h(),
         }
     }
 }

@@ -18,8 +18,10 @@ shared_constants! {
         ENTER_REGION_WORDS: u32 = 12;
         /// Number of steps of a binary search: 2^16 regions.
         ENTER_SEARCH: u32 = 16;
-        /// Number of slots that are tried for a drop.
+        /// Number of random slots that are tried for a drop.
         ENTER_TRIES: u32 = 64;
+        /// Number of slots that are tried after them, one after another.
+        ENTER_SCAN: u32 = 4096;
         /// First dimension of the random numbers of candidates: one of each bin and face.
         ENTER_DRAW: u32 = 16384;
         /// First dimension of the random numbers of slots, one per try.

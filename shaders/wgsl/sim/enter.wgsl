@@ -139,9 +139,14 @@ fn main_enter(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups)
     if step_kind(drop.word) == STEP_GONE {
         return;
     }
-    // Any slot that holds no drop.
-    for (var k = 0u; k < ENTER_TRIES; k += 1u) {
-        let slot = rng_draw(step_frame.seed, candidate, step_frame.step, ENTER_SLOT + k).x % step_frame.count;
+    // Any slot that holds no drop: random ones, then one after another.
+    var slot = 0u;
+    for (var k = 0u; k < ENTER_TRIES + ENTER_SCAN; k += 1u) {
+        if k < ENTER_TRIES {
+            slot = rng_draw(step_frame.seed, candidate, step_frame.step, ENTER_SLOT + k).x % step_frame.count;
+        } else {
+            slot = (slot + 1u) % step_frame.count;
+        }
         let taken = atomicLoad(&enter_claims[slot]);
         if taken == step_frame.step || step_kind(step_positions[slot].w) != STEP_GONE {
             continue;

@@ -91,7 +91,7 @@ struct FieldFrame {
 @group(0) @binding(4) var<storage, read> field_drift: array<vec4f>;
 @group(0) @binding(5) var<storage, read_write> field_drops: array<EyeDrop>;
 // Drops that were found, which may be more than there is room for; and drops that were looked at.
-@group(0) @binding(6) var<storage, read_write> field_found: array<atomic<u32>, 2>;
+@group(0) @binding(6) var<storage, read_write> field_found: array<atomic<u32>, 3>;
 // Of a rate that changes: times (FieldTime), and row by row parts of the drops that fall, in units of 2^-32, by their diameters.
 @group(0) @binding(7) var<storage, read> field_begins: array<vec4u>;
 @group(0) @binding(8) var<storage, read> field_parts: array<u32>;
@@ -368,7 +368,7 @@ fn field_list(column: FieldColumn, chain: FieldChain) {
 @compute @workgroup_size(64, 1, 1)
 fn main_field_clear(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let index = invocation_index(id, groups);
-    if index < 2u {
+    if index < 3u {
         atomicStore(&field_found[index], 0u);
     }
     if index < field_frame.room {

@@ -402,9 +402,9 @@ fn map_case(gpu: &Gpu, angle: f32) -> Result<Run, GpuError> {
     let [width, height] = map.frame().size;
     let there = GpuCollisionMap::new(gpu, [width, height])?;
     let poison = vec![POISON; size_of_val(map.texels()) / 4];
-    gpu.queue().write_buffer(there.texels(), 0, bytemuck::cast_slice(&poison));
+    gpu.queue().write_buffer(there.map().texels(), 0, bytemuck::cast_slice(&poison));
     there.update(gpu, map.frame(), &nodes, &triangles)?;
-    let made = there.read(gpu)?;
+    let made = there.map().read(gpu)?;
     Ok(Run {
         arguments: (0..width * height).map(|i| vec![i % width, i / width]).collect(),
         cpu: Cpu(texel_values(map.texels())),

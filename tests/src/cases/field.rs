@@ -325,8 +325,8 @@ fn found(gpu: &Gpu, kind: Kind) -> Result<Found, GpuError> {
     drops.drain(..3);
     assert!(
         found >= drops.len() as u32
-            && found <= pass.room()
-            && pass.places() == pass.room() + 3
+            && found <= pass.list().room()
+            && pass.list().places() == pass.list().room() + 3
             && tried > found,
         "{found} of {tried}"
     );
@@ -450,7 +450,7 @@ pub(super) fn listed_by(
     })?;
     gpu.submit(&pass.dispatches())?;
     let (drops, [found, _]) = pass.read()?;
-    assert!(found <= pass.room(), "{found} have no room");
+    assert!(found <= pass.list().room(), "{found} have no room");
     Ok((drops, pass.resolved().least_pixels))
 }
 

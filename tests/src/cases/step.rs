@@ -7,11 +7,14 @@ use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_gpu::{Gpu, GpuError};
 use downpour_math::ops;
 use downpour_math::rng::{rng_draw, rng_unit};
+use downpour_shaders::Kernel;
 use downpour_shaders::sim::enter::{ENTER, ENTER_KERNEL};
-use downpour_shaders::sim::step::{MOTION, STEP, STEP_KERNEL, VOLUME, VOLUME_BALL};
+use downpour_shaders::sim::step::{MOTION, STEP, STEP_GONE, STEP_KERNEL, VOLUME, VOLUME_BALL};
+use downpour_shaders::sim::step_list::{STEP_LIST, STEP_LIST_CLEAR_KERNEL, STEP_LIST_KERNEL};
 use downpour_sim::collision::{CollisionMap, CollisionOptions};
 use downpour_sim::enter::{EnterRegion, enter_chance, enter_code, enter_offset};
-use downpour_sim::gpu::{GpuCollisionMap, GpuSimError, GpuSimulation, GpuStepInput};
+use downpour_sim::field::EyeDrop;
+use downpour_sim::gpu::{CollisionMapOnGpu, GpuSimError, GpuSimulation, GpuStepInput, StepPicture};
 use downpour_sim::motion::{
     motion_average, motion_bounce, motion_diameter, motion_relax, motion_settled, motion_table_entry,
     motion_table_speed,
@@ -22,6 +25,7 @@ use downpour_sim::simulation::{
 use downpour_sim::step::{
     StepDrop, step_column, step_count, step_image, step_kind, step_measure, step_pack, step_shown, step_word,
 };
+use downpour_sim::step_list::step_list_id;
 use downpour_sim::view::View;
 use downpour_sim::volume::{
     VolumeEye, VolumeFrustum, volume_images, volume_in_area, volume_in_sphere, volume_limit, volume_local,
@@ -325,6 +329,13 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             step_image(a.u32(), a.u32()).words()
         }),
         FunctionCase::new(
+            "step_list_id",
+            &STEP_LIST,
+            &[AnyWord, AnyWord],
+            Tol::exact("integers are exact"),
+            |a| step_list_id(a.u32(), a.u32()).words(),
+        ),
+        FunctionCase::new(
             "step_column",
             &STEP,
             &[AnyWord, AnyWord, AnyWord, AnyWord, near, near, near],
@@ -520,7 +531,7 @@ fn both(gpu: &Gpu, scenario: Scenario) -> Result<Both, GpuError> {
     let last = if scenario.jumps { View { eye: view(21).eye + 9.0, ..view(21) } } else { view(21) };
     let happened = cpu.advance(1.0 / 60.0, &StepInput { view: &last, ..start }).expect("a step");
     let on_gpu = match &map {
-        Some(map) => Some(GpuCollisionMap::from_cpu(gpu, map)?),
+        Some(map) => Some(CollisionMapOnGpu::upload(gpu, map)?),
         None => None,
     };
     let cells = match &field {
@@ -546,6 +557,104 @@ fn both(gpu: &Gpu, scenario: Scenario) -> Result<Both, GpuError> {
     })
 }
 
+/// The drops of a state that a picture shows, listed on both sides: some of them land or come in again while the shutter is open.
+fn list_case(gpu: &Gpu, volume: SimVolume, walls: bool, pane: Option<[f32; 4]>) -> Result<Run, GpuError> {
+    let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 50.0).expect("a rain");
+    let shutter_s = 0.05;
+    let options = SimulationOptions {
+        volume,
+        seed: 11,
+        max_drops: 6000,
+        shutter_s,
+        wait_s: 1.0 / 60.0,
+        bounce: Bounce { fraction: 0.5, ..Bounce::default() },
+        ..SimulationOptions::default()
+    };
+    let map = walls.then(yard);
+    let eye = |step: u32| {
+        let view = view(step);
+        View { shutter_s, velocity: DVec3::new(1.8, 0.0, 0.0), turning: DVec3::new(0.0, -3.0, 0.0), ..view }
+    };
+    let first = eye(0);
+    // That of the map.
+    let origin = if walls { DVec3::ZERO } else { DVec3::new(0.5, 0.0, -1.0) };
+    let start = StepInput { map: map.as_ref(), ..StepInput::new(&first, origin, Vec3::new(4.0, 0.0, -1.0)) };
+    let mut cpu = Simulation::new(&rain, &options, &start).expect("a simulation");
+    for step in 1..=20 {
+        cpu.advance(1.0 / 60.0, &StepInput { view: &eye(step), ..start }).expect("a step");
+    }
+    let twin = GpuSimulation::from_cpu(gpu, &cpu)?;
+    let (shown, after_s) = (eye(21), 0.04);
+    let listed = cpu.visible_after(after_s, &shown, map.as_ref());
+    let outside = |drop: &downpour_sim::field::FallingDrop| match pane {
+        Some([x, y, z, distance]) => drop.beyond(Vec3::new(x, y, z), distance, &shown),
+        None => Some(*drop),
+    };
+    let expected: Vec<EyeDrop> =
+        listed.drops.iter().filter_map(outside).map(|drop| EyeDrop::new(&drop, shown.eye)).collect();
+    let on_gpu = map.as_ref().map(|map| CollisionMapOnGpu::upload(gpu, map)).transpose()?;
+    let known = [EyeDrop { diameter: 3.0e-3, ..EyeDrop::default() }; 3];
+    let picture =
+        StepPicture { view: &shown, after_s, map: on_gpu.as_ref(), pane, known: &known, max_room: 1 << 20 };
+    let pass = twin.list(gpu, &picture).map_err(of_gpu)?;
+    let poison = vec![f32::from_bits(crate::compare::POISON); 12 * pass.list().room() as usize];
+    let after_known = (known.len() * size_of::<EyeDrop>()) as u64;
+    gpu.queue().write_buffer(pass.list().drops(), after_known, bytemuck::cast_slice(&poison));
+    gpu.submit(&pass.stages().concat())?;
+    let (mut made, [found, looked_at]) = pass.list().read(gpu)?;
+    let is_whole = made.len() as u32 == found + 3 && u64::from(looked_at) == expected_looked_at(&cpu);
+    assert!(is_whole && made.drain(..3).eq(known), "{found} found, {looked_at} looked at");
+    let landing = expected.iter().filter(|drop| drop.present[1] < 1.0).count();
+    assert!(expected.len() > 200 && (!walls || landing > 10), "{} drops, {landing} land", expected.len());
+    let key = |drop: &EyeDrop| (drop.id ^ drop.id_low, drop.id_low, drop.present[0] > -1.0);
+    let words = |drops: Vec<EyeDrop>| -> Vec<(_, [u32; 12])> {
+        let mut rows: Vec<_> = drops
+            .iter()
+            .map(|drop| {
+                let [x, y, z] = drop.offset.map(f32::to_bits);
+                let [u, v, w] = drop.velocity.map(f32::to_bits);
+                let [begin, end] = drop.present.map(f32::to_bits);
+                // On the CPU a list does not say how fast drops fall in still air.
+                (key(drop), [x, y, z, drop.diameter.to_bits(), u, v, w, drop.id, begin, end, 0, drop.id_low])
+            })
+            .collect();
+        rows.sort_by_key(|row| row.0);
+        rows
+    };
+    let [cpu, made] = beside(words(expected), words(made));
+    let mut kinds = vec![WordKind::Float; 12];
+    for integer in [7, 10, 11] {
+        kinds[integer] = WordKind::Integer;
+    }
+    Ok(Run {
+        arguments: (0..cpu.len() as u32 / 12).map(|k| vec![(k as f32).to_bits()]).collect(),
+        cpu: Cpu(cpu),
+        gpu: FromGpu(made),
+        kinds,
+    })
+}
+
+/// Drops of a state that are somewhere.
+fn expected_looked_at(simulation: &Simulation) -> u64 {
+    simulation.drops().iter().filter(|drop| drop.kind() != STEP_GONE).count() as u64
+}
+
+/// Rows of two sides, each beside that of its key: what one of them has not is nothing.
+fn beside<K: Ord, const N: usize>(cpu: Vec<(K, [u32; N])>, gpu: Vec<(K, [u32; N])>) -> [Vec<u32>; 2] {
+    let (mut left, mut right) = (Vec::new(), Vec::new());
+    let (mut cpu, mut gpu) = (cpu.into_iter().peekable(), gpu.into_iter().peekable());
+    loop {
+        let order = match (cpu.peek(), gpu.peek()) {
+            (Some(a), Some(b)) => a.0.cmp(&b.0),
+            (Some(_), None) => Ordering::Less,
+            (None, Some(_)) => Ordering::Greater,
+            (None, None) => return [left, right],
+        };
+        left.extend(if order.is_le() { cpu.next().map_or([0; N], |row| row.1) } else { [0; N] });
+        right.extend(if order.is_ge() { gpu.next().map_or([0; N], |row| row.1) } else { [0; N] });
+    }
+}
+
 fn of_gpu(error: GpuSimError) -> GpuError {
     match error {
         GpuSimError::Gpu(error) => error,
@@ -553,42 +662,30 @@ fn of_gpu(error: GpuSimError) -> GpuError {
     }
 }
 
-fn words(drops: &[StepDrop]) -> Vec<u32> {
-    drops
-        .iter()
-        .flat_map(|d| {
-            let [x, y, z] = d.position.map(f32::to_bits);
-            let [u, v, w] = d.velocity.map(f32::to_bits);
-            [x, y, z, d.word, u, v, w, d.last]
-        })
-        .collect()
+fn row(drop: &StepDrop) -> [u32; 8] {
+    let [x, y, z] = drop.position.map(f32::to_bits);
+    let [u, v, w] = drop.velocity.map(f32::to_bits);
+    [x, y, z, drop.word, u, v, w, drop.last]
 }
 
-/// The drops of both, each beside itself: of a view the order is the device's own. What one of them has not is nothing.
-fn side_by_side([mut cpu, mut gpu]: [Vec<StepDrop>; 2]) -> [Vec<StepDrop>; 2] {
-    let key = |drop: &StepDrop| (drop.last, drop.word);
-    let (mut left, mut right) = (Vec::new(), Vec::new());
-    cpu.sort_by_key(key);
-    gpu.sort_by_key(key);
-    let (mut cpu, mut gpu) = (cpu.into_iter().peekable(), gpu.into_iter().peekable());
-    loop {
-        let order = match (cpu.peek(), gpu.peek()) {
-            (Some(a), Some(b)) => key(a).cmp(&key(b)),
-            (Some(_), None) => Ordering::Less,
-            (None, Some(_)) => Ordering::Greater,
-            (None, None) => return [left, right],
-        };
-        let nothing = StepDrop { position: [0.0; 3], word: 0, velocity: [0.0; 3], last: 0 };
-        left.push(if order.is_le() { cpu.next().unwrap_or(nothing) } else { nothing });
-        right.push(if order.is_ge() { gpu.next().unwrap_or(nothing) } else { nothing });
-    }
+fn words(drops: &[StepDrop]) -> Vec<u32> {
+    drops.iter().flat_map(row).collect()
+}
+
+/// The drops of both, each beside itself: of a view the order is the device's own.
+fn side_by_side(drops: [Vec<StepDrop>; 2]) -> [Vec<u32>; 2] {
+    let [cpu, gpu] = drops.map(|drops| {
+        let mut rows: Vec<_> = drops.iter().map(|drop| ((drop.last, drop.word), row(drop))).collect();
+        rows.sort_by_key(|row| row.0);
+        rows
+    });
+    beside(cpu, gpu)
 }
 
 fn step_case(gpu: &Gpu, scenario: Scenario) -> Result<Run, GpuError> {
     let both = both(gpu, scenario)?;
     let open = scenario.volume == SimVolume::View;
-    let sides = if open { side_by_side(both.drops) } else { both.drops };
-    let [cpu, made] = sides.map(|drops| words(&drops));
+    let [cpu, made] = if open { side_by_side(both.drops) } else { both.drops.map(|drops| words(&drops)) };
     let mut kinds = vec![WordKind::Float; 8];
     kinds[3] = WordKind::Integer;
     if open {
@@ -636,6 +733,16 @@ const STEPPED: Tol = Tol::absolute(
 )
 .with_outliers(3.0e-3);
 
+/// The kernel that clears a list before it is filled.
+const LIST_CLEARED: &[&Kernel] = &[&STEP_LIST_CLEAR_KERNEL];
+
+const LISTED: Tol = Tol::absolute(
+    2.0e-5,
+    "positions up to 10 m after a product and sums, of those that rebound after an exponential; a drop that grazes an edge or a \
+     surface may be on either side of it",
+)
+.with_outliers(5.0e-3);
+
 /// Constants of the kernel where no field of wind, nothing that collides, or neither is there.
 const STILL: &[(&str, f64)] = &[("STEP_FIELD", 0.0)];
 const OPEN: &[(&str, f64)] = &[("STEP_COLLIDES", 0.0)];
@@ -645,6 +752,11 @@ const BARE: &[(&str, f64)] = &[("STEP_COLLIDES", 0.0), ("STEP_FIELD", 0.0)];
 pub(super) fn kernels() -> Vec<KernelCase> {
     let case =
         |name, overrides, tol, run| KernelCase { overrides, ..KernelCase::new(name, &STEP_KERNEL, tol, run) };
+    let list = |name, overrides, run| KernelCase {
+        overrides,
+        with: LIST_CLEARED,
+        ..KernelCase::new(name, &STEP_LIST_KERNEL, LISTED, run)
+    };
     vec![
         case("main_step: a box in a vortex, with a roof", &[], STEPPED, |gpu| {
             step_case(
@@ -703,6 +815,13 @@ pub(super) fn kernels() -> Vec<KernelCase> {
                 gpu,
                 Scenario { volume, drag: Drag::Rousseau2008, windy: true, walls: false, jumps: false },
             )
+        }),
+        list("main_step_list: a view among walls, behind a pane", &[("STEP_FIELD", 0.0)], |gpu| {
+            list_case(gpu, SimVolume::View, true, Some([0.6, 0.0, -0.8, 0.9]))
+        }),
+        list("main_step_list: a box", BARE, |gpu| list_case(gpu, BOX, false, None)),
+        list("main_step_list: a box with a roof", &[("STEP_FIELD", 0.0)], |gpu| {
+            list_case(gpu, BOX, true, None)
         }),
         case("main_step: a cylinder", OPEN, STEPPED, |gpu| {
             let volume = SimVolume::Cylinder { base_m: [0.0, 0.0, 0.0], radius_m: 4.0, height_m: 6.0 };

@@ -2,7 +2,10 @@
 
 use downpour_gpu::{Gpu, GpuError};
 use downpour_math::rng::{rng_draw, rng_unit};
-use downpour_shaders::wind::{FIELD, FIELD_KERNEL, PRIMITIVE, TURBULENCE};
+use downpour_shaders::Kernel;
+use downpour_shaders::wind::{
+    FIELD, FIELD_KERNEL, FIELD_SPREAD_CLEAR_KERNEL, FIELD_SPREAD_KERNEL, PRIMITIVE, TURBULENCE,
+};
 use downpour_wind::field::{
     WindFieldGrid, WindFieldPosition, wind_field_center, wind_field_corner, wind_field_index,
     wind_field_locate, wind_field_mix,
@@ -318,6 +321,43 @@ fn field_case(gpu: &Gpu, size: [u32; 3], cut_off: f32, eddies: f64) -> Result<Ru
     })
 }
 
+/// Wind about positions in a whole field: what lies within 6 m, within all of it, and beyond its edge.
+fn spread_case(gpu: &Gpu) -> Result<Run, GpuError> {
+    let grid = WindGrid::new(Vec3::splat(-10.0), Vec3::new(10.0, 12.0, 9.0), [20, 17, 11]).expect("a grid");
+    let origin = DVec3::new(3.0, -1.0, 2.0);
+    let mask = WindMask::from_fn(&grid, |at| (at - Vec3::new(2.0, 0.0, 1.0)).length() < 4.0);
+    let field = WindField::new(&grid, &primitives(), &mask).expect("a field").relative_to(origin);
+    let places: Vec<(Vec3, f32)> = vec![
+        (Vec3::new(-4.0, 1.0, -3.0), 6.0),
+        (Vec3::new(-4.2, 0.6, -3.1), 0.3),
+        (Vec3::new(1.0, 2.0, 3.0), 100.0),
+        (Vec3::new(30.0, 2.0, 3.0), 4.0),
+        (Vec3::new(-0.6, 1.2, -1.2), 2.0),
+    ];
+    let words = |wind: Vec3, [slope, most]: [f32; 2]| [wind.x, wind.y, wind.z, slope, most].map(f32::to_bits);
+    let cpu = places.iter().flat_map(|&(at, reach)| words(field.sample(at), field.spread(at, reach)));
+    let made = || {
+        let on_gpu = GpuWindField::new(gpu, &grid, field.matrices().len(), 0)?;
+        on_gpu.set_mask(&mask)?;
+        on_gpu.update(&primitives(), &[])?;
+        let about = |&(at, reach): &(Vec3, f32)| on_gpu.about(origin, at, reach).map_err(GpuWindError::from);
+        places.iter().map(about).collect::<Result<Vec<_>, GpuWindError>>()
+    };
+    let found = made().map_err(|error| match error {
+        GpuWindError::Gpu(error) => error,
+        other => panic!("{other}"),
+    })?;
+    Ok(Run {
+        arguments: places.iter().map(|(at, reach)| at.extend(*reach).to_array().words()).collect(),
+        cpu: Cpu(cpu.collect()),
+        gpu: FromGpu(found.iter().flat_map(|about| words(about.wind, about.spread)).collect()),
+        kinds: vec![WordKind::Float; 5],
+    })
+}
+
+/// The kernel that begins a search for the spread.
+const SPREAD_CLEARED: &[&Kernel] = &[&FIELD_SPREAD_CLEAR_KERNEL];
+
 /// The cases.
 pub(super) fn kernels() -> Vec<KernelCase> {
     let field = |name, run| KernelCase {
@@ -343,6 +383,19 @@ pub(super) fn kernels() -> Vec<KernelCase> {
                 "as without turbulence, and up to 48 waves of 2 m/s at angles known to 1e-5",
             ),
             ..field("main_wind_field: turbulence too", |gpu| field_case(gpu, [32, 32, 32], 1.0, 2.0))
+        },
+        KernelCase {
+            with: SPREAD_CLEARED,
+            ..KernelCase::new(
+                "main_wind_field_spread: about some places",
+                &FIELD_SPREAD_KERNEL,
+                Tol::relative(
+                    3.0e-5,
+                    6.0e-5,
+                    "differences of winds that are known to 2e-5 m/s, some over 0.85 m",
+                ),
+                spread_case,
+            )
         },
     ]
 }

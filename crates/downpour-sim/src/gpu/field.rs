@@ -17,6 +17,7 @@ use downpour_wind::UniformWind;
 use glam::{DVec3, Vec3};
 
 use super::GpuSimError;
+use super::list::{COUNTS, DropListOnGpu, list_buffer, made_once};
 use crate::drift::Drift;
 use crate::field::frame::{FieldQuery, ShelterFrame};
 use crate::field::{EyeDrop, RainField, check_time};
@@ -85,9 +86,6 @@ pub struct FieldSearch<'a> {
     pub bounce: Option<&'a Bounce>,
 }
 
-/// Lists that differ by less than so many drops have buffers of one size.
-const LIST_STEP: u32 = 1 << 14;
-
 /// The pipelines of the closed form.
 #[derive(Clone, Debug)]
 pub struct FieldPipeline {
@@ -148,10 +146,7 @@ pub struct FieldPass<'a> {
     splashes: Vec<(Search<'a>, wgpu::BindGroup, [u32; 3])>,
     /// Of the search for droplets: a kernel for each stage, or none.
     bounces: Vec<BoundKernel<'a>>,
-    drops: wgpu::Buffer,
-    found: wgpu::Buffer,
-    known: u32,
-    room: u32,
+    list: DropListOnGpu,
     resolved: Resolved,
     columns: u32,
 }
@@ -231,34 +226,28 @@ impl FieldPipeline {
             let (view, obstacles) = ((search.view, least_pixels), (bounds, obstacles.origin));
             bounce.search(field, view, search.time_s, obstacles, drift_of)
         });
-        let usage = wgpu::BufferUsages::STORAGE;
         query.frame.room += crowns + bounce.as_ref().map_or(0, |bounce| bounce.frame.room);
         let (known, room) = (search.known.len() as u32, query.frame.room);
         query.frame.first = known;
         query.frame.pane = search.pane.unwrap_or_default();
-        let list = |label, places: u32| {
-            let places = u64::from(places.next_multiple_of(LIST_STEP));
-            buffers.buffer(label, places * size_of::<EyeDrop>() as u64, usage)
-        };
-        let drops = list("falling drops", known + room)?;
-        buffers.write(&drops, bytemuck::cast_slice(search.known));
-        let found = buffers.buffer("number of drops", 8, usage)?;
-        let to = ListOnGpu { drops: &drops, found: &found };
+        let list = DropListOnGpu::new(buffers, search.known, room)?;
+        let (drops, found) = (list.drops(), list.counts());
+        let to = ListOnGpu { drops, found };
         let (resolved, columns) = (query.resolved, query.frame.columns);
         let of_picture =
             self.search(buffers, (field, on), obstacles, (search.view, search.time_s), &query, to)?;
         let mut splashes = Vec::new();
         for slice in slices {
             let SplashSearch { slice, view, query, mut frame } = slice;
-            let of_slice = list("drops of a slice", query.frame.room)?;
-            let counts = buffers.buffer("number of drops of a slice", 8, usage)?;
+            let of_slice = list_buffer(buffers, "drops of a slice", query.frame.room, 0)?;
+            let counts = buffers.buffer("number of drops of a slice", COUNTS, wgpu::BufferUsages::STORAGE)?;
             let from = ListOnGpu { drops: &of_slice, found: &counts };
             let time_s = slice.middle_s();
             let searched = self.search(buffers, (field, on), obstacles, (&view, time_s), &query, from)?;
             (frame.first, frame.room) = (known, room);
             frame.pane = search.pane.unwrap_or_default();
             let uniform = buffers.uniform("splash frame", &frame)?;
-            let bound = [&uniform, obstacles.nodes, obstacles.triangles, &of_slice, &counts, &drops, &found];
+            let bound = [&uniform, obstacles.nodes, obstacles.triangles, &of_slice, &counts, drops, found];
             let groups = workgroups_for(frame.drops);
             splashes.push((searched, self.splash.bind(buffers, &bound)?, groups));
         }
@@ -271,18 +260,7 @@ impl FieldPipeline {
             _ => Vec::new(),
         };
         on.forget_far_from(search.time_s);
-        Ok(FieldPass {
-            pipeline: self,
-            search: of_picture,
-            splashes,
-            bounces,
-            drops,
-            found,
-            known,
-            room,
-            resolved,
-            columns,
-        })
+        Ok(FieldPass { pipeline: self, search: of_picture, splashes, bounces, list, resolved, columns })
     }
 
     /// Makes ready to find some drops.
@@ -339,9 +317,8 @@ impl FieldPipeline {
         let drift = buffers.storage("drift of drops with droplets", &query.drift)?;
         let bounce_frame = buffers.uniform("bounce frame", frame)?;
         let rows = buffers.storage("motion by the wind", rows)?;
-        let places = u64::from(frame.parts.next_multiple_of(LIST_STEP));
-        let bytes = offset_of!(BounceParts, drops) as u64 + places * size_of::<EyeDrop>() as u64;
-        let parts = buffers.buffer("parts of paths", bytes, wgpu::BufferUsages::STORAGE)?;
+        let before = offset_of!(BounceParts, drops) as u64;
+        let parts = list_buffer(buffers, "parts of paths", frame.parts, before)?;
         let (shelter, paths) = shelter_frame(field, on, query, (obstacles, bounds), (view, *end_s));
         let shelter = buffers.uniform("shelter frame of droplets", &shelter)?;
         let paths = buffers.storage("drift of paths of drops with droplets", &paths)?;
@@ -400,15 +377,6 @@ impl FieldPipeline {
         }
         made_once(&self.among_holes, || ComputeKernel::new(&self.gpu, &SHELTER_AMONG_HOLES_KERNEL, &[]))
     }
-}
-
-/// What is made when it is first asked for.
-fn made_once<T>(kept: &OnceLock<T>, make: impl FnOnce() -> Result<T, GpuError>) -> Result<&T, GpuError> {
-    if let Some(known) = kept.get() {
-        return Ok(known);
-    }
-    let made = make()?;
-    Ok(kept.get_or_init(|| made))
 }
 
 /// The frame of the search for what obstacles stop, and the drift of paths relative to that up to the picture's time.
@@ -499,30 +467,10 @@ impl FieldPass<'_> {
         self.stages().concat()
     }
 
-    /// The drops on the device ([`EyeDrop`]): those that were known, and then the others in any order, with empty places between
-    /// them.
+    /// The list that they fill.
     #[must_use]
-    pub fn drops(&self) -> &wgpu::Buffer {
-        &self.drops
-    }
-
-    /// Places of that list.
-    #[must_use]
-    pub fn places(&self) -> u32 {
-        self.known + self.room
-    }
-
-    /// Room for drops that are found.
-    #[must_use]
-    pub fn room(&self) -> u32 {
-        self.room
-    }
-
-    /// Two numbers on the device: drops that were found before obstacles stopped some of them, of which those beyond the room are
-    /// lost; and drops that were looked at.
-    #[must_use]
-    pub fn counts(&self) -> &wgpu::Buffer {
-        &self.found
+    pub fn list(&self) -> &DropListOnGpu {
+        &self.list
     }
 
     /// Columns that are searched.
@@ -542,11 +490,6 @@ impl FieldPass<'_> {
     /// # Errors
     /// Returns the error of the GPU.
     pub fn read(&self) -> Result<(Vec<EyeDrop>, [u32; 2]), GpuError> {
-        let gpu = &self.pipeline.gpu;
-        let mut drops = gpu.read::<EyeDrop>(&self.drops)?;
-        drops.truncate(self.places() as usize);
-        drops.retain(|drop| drop.diameter > 0.0);
-        let found = gpu.read::<u32>(&self.found)?;
-        Ok((drops, [found[0], found[1]]))
+        self.list.read(&self.pipeline.gpu)
     }
 }

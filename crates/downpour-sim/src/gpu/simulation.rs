@@ -6,22 +6,24 @@
 use bytemuck::Zeroable as _;
 use downpour_drop::distribution::DropSizeDistribution;
 use downpour_gpu::timing::PassTime;
-use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
+use downpour_gpu::{BufferPool, BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
 use downpour_shaders::sim::enter::ENTER_KERNEL;
 use downpour_shaders::sim::step::{STEP_GONE, STEP_KERNEL, STEP_KIND};
 use downpour_wind::UniformWindAt;
 use downpour_wind::field::WindFieldGrid;
 use glam::{DVec3, Vec3};
 
-use super::{GpuCollisionMap, GpuSimError};
+use super::step_list::{StepListKernels, StepListPass, StepPicture, StepPiece};
+use super::{CollisionMapOnGpu, GpuSimError};
 use crate::collision::CollisionMap;
 use crate::enter::EnterRegion;
 use crate::field::VisibleDrops;
 use crate::fill::fill;
-use crate::list::{Listing, listed};
 use crate::plan::{AirAtEye, Plan, Turn, lags};
+use crate::resolved::Resolved;
 use crate::simulation::{Simulation, SimulationOptions, StepEvents, StepInput};
 use crate::step::{StepCaught, StepDrop, StepEvent, StepFrame, StepWorld};
+use crate::step_list::{Listing, listed};
 use crate::view::View;
 
 /// Maximum number of drops of a piece: two buffers of 64 MiB, which every device can bind.
@@ -61,7 +63,7 @@ pub struct GpuStepInput<'a> {
     /// ([`WindField::spread`](downpour_wind::WindField::spread)). Needed for views only.
     pub spread: [f32; 2],
     /// Collision map.
-    pub map: Option<&'a GpuCollisionMap>,
+    pub map: Option<&'a CollisionMapOnGpu>,
     /// Uniform part of the wind, as it changes (see `StepInput`).
     pub air: Option<&'a UniformWindAt<'a>>,
 }
@@ -90,6 +92,13 @@ struct Piece {
     claims: wgpu::Buffer,
 }
 
+impl Piece {
+    fn slots(&self) -> StepPiece<'_> {
+        let Self { positions, motions, count, first, .. } = self;
+        StepPiece { positions, motions, count: *count, first: *first }
+    }
+}
+
 /// Kernels of a configuration: the step, and the entry of drops.
 #[derive(Clone)]
 struct Kernels {
@@ -112,6 +121,26 @@ pub struct GpuSimulation {
     nowhere: wgpu::Buffer,
     /// Kernels by the presence of a wind field and of a map.
     kernels: [Option<Kernels>; 4],
+    lists: StepListKernels,
+    /// What is written and bound in each step.
+    pool: BufferPool,
+}
+
+/// Buffers that the list of a picture's drops reads.
+#[derive(Debug)]
+pub(super) struct StepBuffers<'a> {
+    pub(super) pieces: Vec<StepPiece<'a>>,
+    pub(super) tables: &'a wgpu::Buffer,
+    pub(super) counts: &'a wgpu::Buffer,
+    /// Placeholders of unused bindings.
+    pub(super) nothing: &'a wgpu::Buffer,
+    pub(super) nowhere: &'a wgpu::Buffer,
+}
+
+impl std::fmt::Debug for GpuSimulation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("GpuSimulation").field("count", &self.count()).finish_non_exhaustive()
+    }
 }
 
 impl GpuSimulation {
@@ -151,6 +180,8 @@ impl GpuSimulation {
             nothing: gpu.storage_buffer("nothing", &[0u32; 64])?,
             nowhere: gpu.uniform_buffer("nowhere", &[0u32; 64])?,
             kernels: [const { None }; 4],
+            lists: StepListKernels::default(),
+            pool: BufferPool::new(gpu),
             gpu: gpu.clone(),
             plan,
         })
@@ -217,6 +248,7 @@ impl GpuSimulation {
         &mut self,
         input: &GpuStepInput<'_>,
     ) -> Result<(Kernels, Vec<(wgpu::BindGroup, Option<wgpu::BindGroup>)>), GpuError> {
+        self.pool.begin_frame();
         let variant = usize::from(input.field.is_some()) + 2 * usize::from(input.map.is_some());
         let kernels = match &self.kernels[variant] {
             Some(kernels) => kernels.clone(),
@@ -234,7 +266,7 @@ impl GpuSimulation {
             }
         };
         let grid = match input.field {
-            Some((grid, _)) => &self.gpu.uniform_buffer("wind grid", grid)?,
+            Some((grid, _)) => &self.pool.uniform("wind grid", grid)?,
             None => &self.nowhere,
         };
         let cells = input.field.map_or(&self.nothing, |(_, cells)| cells);
@@ -245,9 +277,9 @@ impl GpuSimulation {
             let counts = [&self.events, &self.counts];
             let state = [of_piece, positions, motions, &self.tables, cells];
             let shared = [&state[..], &counts[..], &[grid, frame, texels]].concat();
-            let step = kernels.step.bind(&self.gpu, &shared)?;
+            let step = kernels.step.bind(&self.pool, &shared)?;
             let all = [&shared[..], &[claims]].concat();
-            let enter = kernels.enter.as_ref().map(|enter| enter.bind(&self.gpu, &all)).transpose()?;
+            let enter = kernels.enter.as_ref().map(|enter| enter.bind(&self.pool, &all)).transpose()?;
             Ok::<_, GpuError>((step, enter))
         };
         let bound = self.pieces.iter().map(bind).collect::<Result<_, _>>()?;
@@ -355,6 +387,38 @@ impl GpuSimulation {
     ) -> Result<VisibleDrops, GpuSimError> {
         let listing = Listing { plan: &self.plan, speeds: &self.speeds, view, after_s, map };
         Ok(listed(&listing, &self.drops()?))
+    }
+
+    /// Makes ready to list the drops that a picture can show some time after the state. Drops that had no room among those of the rain
+    /// are counted in [`DropListOnGpu::counts`](super::DropListOnGpu::counts).
+    ///
+    /// # Errors
+    /// [`SimError::OutOfRange`](crate::SimError::OutOfRange) for an invalid camera; [`GpuError`].
+    pub fn list(
+        &self,
+        buffers: &impl BufferSource,
+        picture: &StepPicture<'_>,
+    ) -> Result<StepListPass, GpuSimError> {
+        let state = StepBuffers {
+            pieces: self.pieces.iter().map(Piece::slots).collect(),
+            tables: &self.tables,
+            counts: &self.counts,
+            nothing: &self.nothing,
+            nowhere: &self.nowhere,
+        };
+        self.lists.prepare(buffers, &self.plan, &state, picture)
+    }
+
+    /// Limits of the list of drops that a picture can show.
+    #[must_use]
+    pub fn resolved(&self, view: &View) -> Resolved {
+        self.plan.resolved(view)
+    }
+
+    /// Maximum distance from the eye of a view at which a drop is resolved, m.
+    #[must_use]
+    pub fn farthest_m(&self, view: &View) -> f64 {
+        self.plan.farthest(view)
     }
 
     /// Rate, mm/h, of the drops that fall in the volume, as [`Simulation::measured_rate_mm_h`].

@@ -1,9 +1,12 @@
 //! Drops of a picture on a GPU: those of a list, or those that the device finds in a rain.
 
-use downpour_gpu::{Gpu, GpuError, Readback, ReadbackPool, wgpu};
+use downpour_gpu::{BufferSource, Dispatch, Gpu, GpuError, Readback, ReadbackPool, wgpu};
 use downpour_render::gpu::LightingOnGpu;
 use downpour_sim::field::{EyeDrop, FallingDrop, RainField};
-use downpour_sim::gpu::{FieldOnGpu, FieldPass, FieldPipeline, FieldSearch, HolesOnGpu, ObstaclesOnGpu};
+use downpour_sim::gpu::{
+    DropListOnGpu, FieldOnGpu, FieldPass, FieldPipeline, FieldSearch, GpuSimulation, HolesOnGpu,
+    ObstaclesOnGpu, StepListPass, StepPicture,
+};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
@@ -17,6 +20,32 @@ pub enum PictureDrops<'a> {
     Listed(&'a [FallingDrop]),
     /// Those of a rain in closed form, which the device finds.
     Field(FieldDrops<'a>),
+    /// Those of a rain that the device has stepped, which it lists.
+    Stepped(&'a GpuSimulation, StepPicture<'a>),
+}
+
+/// Drops of a picture, ready to be found or listed by the device.
+#[derive(Debug)]
+pub(super) enum FallingPass<'a> {
+    Field(FieldPass<'a>),
+    Stepped(StepListPass),
+}
+
+impl FallingPass<'_> {
+    pub(super) fn list(&self) -> &DropListOnGpu {
+        match self {
+            Self::Field(pass) => pass.list(),
+            Self::Stepped(pass) => pass.list(),
+        }
+    }
+
+    /// The dispatches in stages, one after another.
+    pub(super) fn stages(&self) -> Vec<Vec<Dispatch<'_>>> {
+        match self {
+            Self::Field(pass) => pass.stages().into(),
+            Self::Stepped(pass) => pass.stages().into(),
+        }
+    }
 }
 
 /// A rain in closed form before a picture.
@@ -57,7 +86,7 @@ impl FieldDrops<'_> {
     pub(super) fn prepare<'a>(
         &mut self,
         pipeline: &'a FieldPipeline,
-        buffers: &impl downpour_gpu::BufferSource,
+        buffers: &impl BufferSource,
         scene: &SceneData,
         lighting: &LightingOnGpu,
     ) -> Result<FieldPass<'a>, GpuPictureError> {
@@ -79,13 +108,12 @@ impl FoundReadback {
     pub(super) fn begin(
         gpu: &Gpu,
         pool: &ReadbackPool,
-        pass: &FieldPass<'_>,
+        list: &DropListOnGpu,
         is_counted: bool,
     ) -> Result<Self, GpuError> {
-        let buffers: [&wgpu::Buffer; 2] = [pass.counts(), pass.drops()];
+        let buffers: [&wgpu::Buffer; 2] = [list.counts(), list.drops()];
         let read = pool.begin(gpu, if is_counted { &buffers[..1] } else { &buffers })?;
-        let (places, room) = (pass.places(), pass.room());
-        Ok(Self { read, is_counted, places, known: places - room, room })
+        Ok(Self { read, is_counted, places: list.places(), known: list.known(), room: list.room() })
     }
 
     /// Waits for the number of drops that were looked at.
@@ -96,8 +124,9 @@ impl FoundReadback {
     fn counts(&mut self) -> Result<u64, GpuPictureError> {
         self.read.wait()?;
         let counts = self.read.take::<u32>(0)?;
-        let [found, simulated] = [0, 1].map(|k| counts.get(k).copied().unwrap_or_default());
-        if found > self.room {
+        let [found, simulated, left_out] = [0, 1, 2].map(|k| counts.get(k).copied().unwrap_or_default());
+        if found > self.room || left_out > 0 {
+            let found = found.max(self.room).saturating_add(left_out);
             return Err(GpuPictureError::NoRoom { found, room: self.room });
         }
         Ok(simulated.into())

@@ -23,7 +23,7 @@ use downpour_render::picture::{DeviceUse, Picture, PictureOptions};
 use downpour_render::rain::{DropMasks, Rain};
 use downpour_render::tone::ToneCurve;
 
-use super::falling::{FoundDrops, FoundReadback, PictureDrops};
+use super::falling::{FallingPass, FoundDrops, FoundReadback, PictureDrops};
 use super::scene::{SceneOnGpu, ScenePipeline};
 use crate::data::{RenderFrame, SceneData};
 use crate::kept::KeptPlate;
@@ -265,7 +265,10 @@ impl PictureRenderer {
             }
             PictureDrops::Field(mut drops) => {
                 let search = drops.prepare(&self.fields, pool, scene, plate.lighting())?;
-                Ok::<_, GpuPictureError>((search.drops().clone(), search.places(), Some(search)))
+                Ok::<_, GpuPictureError>(listed(FallingPass::Field(search)))
+            }
+            PictureDrops::Stepped(simulation, picture) => {
+                Ok(listed(FallingPass::Stepped(simulation.list(pool, &picture)?)))
             }
         })?;
         let frequencies = self.frequencies(&options.rain.exposure.fluids)?;
@@ -309,7 +312,9 @@ impl PictureRenderer {
         let (times, ticks) = passes.end()?;
         // The next picture may write the list.
         let is_displayed = pixels.is_some();
-        let begin = |search| FoundReadback::begin(&self.gpu, &self.readbacks, &search, is_displayed);
+        let begin = |search: FallingPass<'_>| {
+            FoundReadback::begin(&self.gpu, &self.readbacks, search.list(), is_displayed)
+        };
         let found = search.map(begin).transpose()?;
         layers.push(("rain", layer.clone()));
         layers.push(("distances of drops", distances.clone()));
@@ -501,6 +506,11 @@ impl PictureReadback {
         let picture = Picture::new(&rain, clean, layer, environment, passes).with_seen(&distances);
         Ok((Picture { device: Some(device), glow, ..picture }, found))
     }
+}
+
+/// The buffer and the places of a list that the device makes, with its making.
+fn listed(pass: FallingPass<'_>) -> (wgpu::Buffer, u32, Option<FallingPass<'_>>) {
+    (pass.list().drops().clone(), pass.list().places(), Some(pass))
 }
 
 /// Gives buffers back to a pool: what writes them next is submitted after the copies.

@@ -258,14 +258,10 @@ impl Drawer {
         Ok(WetPane::new(weather, viewpoint, first_s)?)
     }
 
-    /// Drops that the device has room for, if it finds the drops of rain in closed form itself.
-    pub(super) fn max_drops(&self) -> Option<u32> {
-        #[cfg(feature = "wgpu")]
-        {
-            self.on_gpu.as_ref().map(OnGpu::max_drops)
-        }
-        #[cfg(not(feature = "wgpu"))]
-        None
+    /// The device that finds or steps drops, and the number of drops that it has room for.
+    #[cfg(feature = "wgpu")]
+    pub(super) fn finder(&self) -> Option<(&downpour_gpu::Gpu, u32)> {
+        self.on_gpu.as_ref().map(|on_gpu| (on_gpu.gpu(), on_gpu.max_drops()))
     }
 
     /// Draws a frame for a display, if a GPU draws.

@@ -82,7 +82,7 @@ impl Renderer {
     #[cfg(feature = "wgpu")]
     fn display_of_device(&mut self, time_s: f64, exposure: f32) -> Result<Option<Pending>, RendererError> {
         let begin = Instant::now();
-        if self.drawer.max_drops().is_none() {
+        if self.drawer.finder().is_none() {
             return Ok(None);
         }
         let told = &mut |_| {};

@@ -12,6 +12,7 @@ pub(super) enum Drops {
     /// These.
     Listed(VisibleDrops),
     /// Those that the device finds.
+    #[cfg_attr(not(feature = "wgpu"), expect(dead_code, reason = "no device finds any"))]
     OfDevice(Box<ShowerView>),
 }
 

@@ -90,6 +90,7 @@ impl RendererError {
         match self {
             Self::Gpu(error)
             | Self::Picture(GpuPictureError::Gpu(error))
+            | Self::Shower(ShowerError::Gpu(error))
             | Self::Pane(PaneError::Gpu(error)) => Some(error),
             _ => None,
         }

@@ -63,9 +63,7 @@ impl Renderer {
                 // The picture has the eye of the frame, and drops relative to it.
                 let mut moved = frame_scene.clone();
                 moved.viewpoint.eye += moved.motion.velocity * later_s as f32;
-                let max_room = self.drawer.max_drops().unwrap_or(u32::MAX);
-                let view = self.shower.view_at(&moved, time_s + later_s, max_room)?;
-                Drops::OfDevice(view.map_or_else(|| shown.clone(), Box::new))
+                Drops::OfDevice(Box::new(self.shower.later(shown, &moved, time_s + later_s)?))
             }
         };
         let medium = self.shower.medium(&frame_scene, drops.resolved(), &self.masks, time_s + later_s)?;

@@ -9,7 +9,7 @@ use downpour_render::gpu::{BehindGlass, EnvironmentMap, GlassRenderer};
 use downpour_render::picture::PictureOptions;
 use downpour_render::rain::DropMasks;
 use downpour_sim::field::{EyeDrop, RainField};
-use downpour_sim::gpu::{FieldOnGpu, FieldSearch};
+use downpour_sim::gpu::{FieldOnGpu, FieldSearch, StepPicture};
 use downpour_trace::frame_scene::FrameScene;
 use downpour_trace::gpu::{
     DisplayReadback, FieldDrops, PictureDrops, PictureOnGpu, PictureRenderer, PictureUse,
@@ -18,7 +18,7 @@ use downpour_trace::gpu::{
 use super::RendererError;
 use super::computer::{Painted, PaneView, ThroughGlass};
 use super::drops::Drops;
-use crate::shower::ShowerView;
+use crate::shower::{ShowerRain, ShowerView};
 
 /// A GPU with its pipelines.
 pub(super) struct OnGpu {
@@ -115,27 +115,41 @@ impl OnGpu {
         masks: &DropMasks,
         options: &PictureOptions,
     ) -> Result<PictureOnGpu, RendererError> {
-        let mut field = self.field.borrow_mut();
-        let kept = field.take().filter(|(known, _)| Arc::ptr_eq(known, &shown.field));
-        let kept = match kept {
-            Some(kept) => kept,
-            None => (Arc::clone(&shown.field), self.renderer.upload_field(&shown.field)?),
-        };
-        let (rain, on_gpu) = field.insert(kept);
         let known: Vec<EyeDrop> =
             shown.droplets.iter().map(|drop| EyeDrop::new(drop, shown.view.eye)).collect();
+        let pane = shown.pane.map(|pane| pane.outward.extend(pane.distance).to_array());
+        let max_room = self.renderer.max_drops();
+        let draw = |drops: PictureDrops<'_>| {
+            self.renderer.draw_for(of, &frame_scene.data, &frame_scene.viewpoint, drops, masks, options)
+        };
+        let (field, splashes, bounce) = match &shown.rain {
+            ShowerRain::Closed { field, splashes, bounce, .. } => (field, splashes, bounce),
+            ShowerRain::Stepped(picture) => {
+                return Ok(picture.with(|simulation, after_s, map| {
+                    let view = &shown.view;
+                    let picture = StepPicture { view, after_s, map, pane, known: &known, max_room };
+                    draw(PictureDrops::Stepped(simulation, picture))
+                })?);
+            }
+        };
+        let mut last = self.field.borrow_mut();
+        let kept = last.take().filter(|(known, _)| Arc::ptr_eq(known, field));
+        let kept = match kept {
+            Some(kept) => kept,
+            None => (Arc::clone(field), self.renderer.upload_field(field)?),
+        };
+        let (rain, on_gpu) = last.insert(kept);
         let search = FieldSearch {
             view: &shown.view,
             time_s: shown.time_s,
-            max_room: self.renderer.max_drops(),
-            pane: shown.pane.map(|pane| pane.outward.extend(pane.distance).to_array()),
+            max_room,
+            pane,
             known: &known,
-            splashes: shown.splashes.as_ref(),
-            bounce: shown.bounce.as_ref(),
+            splashes: splashes.as_ref(),
+            bounce: bounce.as_ref(),
         };
-        let drops =
-            PictureDrops::Field(FieldDrops { field: rain, on_gpu, search, origin: frame_scene.origin });
-        Ok(self.renderer.draw_for(of, &frame_scene.data, &frame_scene.viewpoint, drops, masks, options)?)
+        let origin = frame_scene.origin;
+        Ok(draw(PictureDrops::Field(FieldDrops { field: rain, on_gpu, search, origin }))?)
     }
 
     /// The pipelines of panes.

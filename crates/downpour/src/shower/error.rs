@@ -48,4 +48,34 @@ pub enum ShowerError {
     /// The pane before the eye.
     #[error(transparent)]
     Pane(#[from] PaneError),
+    /// The GPU that steps the drops.
+    #[cfg(feature = "wgpu")]
+    #[error(transparent)]
+    Gpu(#[from] downpour_gpu::GpuError),
+    /// The field of the wind on the GPU.
+    #[cfg(feature = "wgpu")]
+    #[error(transparent)]
+    GpuWind(downpour_wind::gpu::GpuWindError),
+}
+
+#[cfg(feature = "wgpu")]
+impl From<downpour_sim::gpu::GpuSimError> for ShowerError {
+    fn from(error: downpour_sim::gpu::GpuSimError) -> Self {
+        match error {
+            downpour_sim::gpu::GpuSimError::Sim(error) => Self::Sim(error),
+            downpour_sim::gpu::GpuSimError::Gpu(error) => Self::Gpu(error),
+        }
+    }
+}
+
+#[cfg(feature = "wgpu")]
+impl From<downpour_wind::gpu::GpuWindError> for ShowerError {
+    fn from(error: downpour_wind::gpu::GpuWindError) -> Self {
+        use downpour_wind::gpu::GpuWindError;
+        match error {
+            GpuWindError::Wind(error) => Self::Wind(error),
+            GpuWindError::Gpu(error) => Self::Gpu(error),
+            other => Self::GpuWind(other),
+        }
+    }
 }

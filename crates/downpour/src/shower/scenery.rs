@@ -12,6 +12,11 @@ pub trait Scenery {
     /// True if all of it stands still, the eye included.
     fn is_still(&self) -> bool;
 
+    /// True if all but the eye and the light stands still.
+    fn has_still_things(&self) -> bool {
+        self.is_still()
+    }
+
     /// The part of space that a picture at a time in seconds shows.
     ///
     /// # Errors
@@ -80,6 +85,10 @@ pub struct MovingEye<'a> {
 impl Scenery for MovingEye<'_> {
     fn is_still(&self) -> bool {
         false
+    }
+
+    fn has_still_things(&self) -> bool {
+        true
     }
 
     fn view(&self, time_s: f64) -> Result<View, FrameSceneError> {

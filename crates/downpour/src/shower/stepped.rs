@@ -7,6 +7,11 @@
 //! Rain in view forgets: its drops depend on the last seconds alone, and whoever seeks simulates those. Rain in a box or a
 //! cylinder remembers: it is simulated from time 0 on, up to a minute; a rain that is first looked at later begins then.
 
+#[cfg(feature = "wgpu")]
+mod device;
+
+use std::sync::Arc;
+
 use downpour_bvh::{BvhNode, BvhTriangle};
 use downpour_drop::distribution::DropSizeDistribution;
 use downpour_drop::fall_speed::TerminalSpeed;
@@ -16,8 +21,13 @@ use downpour_sim::simulation::{Drag, SimVolume, Simulation, SimulationOptions, S
 use downpour_sim::view::View;
 use downpour_weather::{RAIN_BOX_M, RainDrag, RainVolume, Weather};
 use downpour_wind::turbulence::WindTurbulenceMode;
-use downpour_wind::{WindField, WindGrid, WindMask, WindPrimitive};
+use downpour_wind::{UniformWindAt, WindField, WindGrid, WindMask, WindPrimitive};
 use glam::{DVec3, Vec3};
+
+#[cfg(feature = "wgpu")]
+use device::SteppedOnGpu;
+#[cfg(feature = "wgpu")]
+pub use device::SteppedPicture;
 
 use super::scenery::Scenery;
 use super::{ShowerError, bounce};
@@ -67,7 +77,7 @@ pub(super) struct Stepped {
 
 #[derive(Clone, Debug)]
 struct Running {
-    simulation: Simulation,
+    drops: StepDrops,
     /// Steps from time 0 to the state.
     step: i64,
     step_scenery: StepScenery,
@@ -75,13 +85,90 @@ struct Running {
     is_stale: bool,
 }
 
+/// The drops, on what steps them.
+#[derive(Clone, Debug)]
+enum StepDrops {
+    Cpu(Box<Simulation>),
+    #[cfg(feature = "wgpu")]
+    Device(SteppedOnGpu),
+}
+
+/// A device that steps drops in place of the CPU.
+#[cfg(feature = "wgpu")]
+type StepDevice = downpour_gpu::Gpu;
+/// There is none without the feature `wgpu`.
+#[cfg(not(feature = "wgpu"))]
+type StepDevice = std::convert::Infallible;
+
+impl StepDrops {
+    /// Begins with the drops of a simulation, on a device if there is one.
+    fn new(simulation: Simulation, device: Option<&StepDevice>) -> Result<Self, ShowerError> {
+        match device {
+            #[cfg(feature = "wgpu")]
+            Some(gpu) => Ok(Self::Device(SteppedOnGpu::new(gpu, &simulation)?)),
+            #[cfg(not(feature = "wgpu"))]
+            Some(never) => match *never {},
+            None => Ok(Self::Cpu(Box::new(simulation))),
+        }
+    }
+
+    /// True if a device steps them, or the CPU without one.
+    fn are_on(&self, device: Option<&StepDevice>) -> bool {
+        match (self, device) {
+            (Self::Cpu(_), None) => true,
+            #[cfg(feature = "wgpu")]
+            (Self::Device(on), Some(gpu)) => on.is_on(gpu),
+            _ => false,
+        }
+    }
+
+    /// Makes a step.
+    fn step(
+        &mut self,
+        scenery: &StepScenery,
+        view: &View,
+        air: &UniformWindAt<'_>,
+    ) -> Result<(), ShowerError> {
+        match self {
+            Self::Cpu(simulation) => {
+                simulation.advance(1.0 / STEPS_PER_S, &scenery.input(view, air))?;
+                Ok(())
+            }
+            #[cfg(feature = "wgpu")]
+            Self::Device(on) => on.step(scenery, view, air),
+        }
+    }
+
+    /// Drops that a picture can show some time after the state, s.
+    fn visible_after(
+        &self,
+        after_s: f64,
+        view: &View,
+        map: Option<&CollisionMap>,
+    ) -> Result<VisibleDrops, ShowerError> {
+        match self {
+            Self::Cpu(simulation) => Ok(simulation.visible_after(after_s, view, map)),
+            #[cfg(feature = "wgpu")]
+            Self::Device(on) => on.visible_after(after_s, view, map),
+        }
+    }
+
+    fn measured_rate_mm_h(&self, map: Option<&CollisionMap>) -> Result<f64, ShowerError> {
+        match self {
+            Self::Cpu(simulation) => Ok(simulation.measured_rate_mm_h(map)),
+            #[cfg(feature = "wgpu")]
+            Self::Device(on) => on.measured_rate_mm_h(map),
+        }
+    }
+}
+
 /// Obstacles and wind of the drops.
 #[derive(Clone, Debug)]
 struct StepScenery {
     /// Digest of the scene that the map was made of.
     made_of: Option<(u64, CollisionOptions)>,
-    map: Option<CollisionMap>,
-    wind: Option<Blown>,
+    map: Option<Arc<CollisionMap>>,
+    wind: Option<Arc<Blown>>,
     /// Origin of map and field.
     origin: DVec3,
 }
@@ -92,12 +179,20 @@ struct Blown {
     parts: Vec<WindPrimitive>,
     modes: Vec<WindTurbulenceMode>,
     grid: WindGrid,
-    field: WindField,
+    mask: Arc<WindMask>,
+    /// Its cells; `None` where a device fills them.
+    field: Option<WindField>,
 }
 
 impl StepScenery {
-    fn field(&self) -> Option<&WindField> {
-        self.wind.as_ref().map(|wind| &wind.field)
+    /// The state at the end of a step on the CPU.
+    fn input<'a>(&'a self, view: &'a View, air: &'a UniformWindAt<'a>) -> StepInput<'a> {
+        StepInput {
+            field: self.wind.as_ref().and_then(|wind| wind.field.as_ref()),
+            map: self.map.as_deref(),
+            air: Some(air),
+            ..StepInput::new(view, self.origin, air.velocity().as_vec3())
+        }
     }
 }
 
@@ -151,6 +246,45 @@ impl Stepped {
         time_s: f64,
         passed: &mut dyn FnMut(u32, u32),
     ) -> Result<VisibleDrops, ShowerError> {
+        let (running, view, after_s) = self.run(None, scenery, frame_scene, time_s, passed)?;
+        let now = self.map_now(scenery, frame_scene, &view, &running.step_scenery, time_s)?;
+        let map = now.as_ref().or(running.step_scenery.map.as_deref());
+        let visible = running.drops.visible_after(after_s, &view, map)?;
+        self.running = Some(running);
+        Ok(visible)
+    }
+
+    /// The same on a device, which lists the drops for the picture; with the view that it is of.
+    #[cfg(feature = "wgpu")]
+    pub(super) fn on_device(
+        &mut self,
+        gpu: &downpour_gpu::Gpu,
+        scenery: &dyn Scenery,
+        frame_scene: &FrameScene,
+        time_s: f64,
+        passed: &mut dyn FnMut(u32, u32),
+    ) -> Result<(View, SteppedPicture), ShowerError> {
+        let (running, view, after_s) = self.run(Some(gpu), scenery, frame_scene, time_s, passed)?;
+        let now = self.map_now(scenery, frame_scene, &view, &running.step_scenery, time_s)?;
+        let on = match &running.drops {
+            StepDrops::Device(on) => on.clone(),
+            StepDrops::Cpu(simulation) => SteppedOnGpu::new(gpu, simulation)?,
+        };
+        let picture = on.picture(&view, after_s, &running.step_scenery, now.as_ref())?;
+        self.running = Some(running);
+        Ok((view, picture))
+    }
+
+    /// Steps the drops up to the last whole step before the shutter of a picture opens; the view of that picture, and the time
+    /// from there to the picture, s.
+    fn run(
+        &mut self,
+        device: Option<&StepDevice>,
+        scenery: &dyn Scenery,
+        frame_scene: &FrameScene,
+        time_s: f64,
+        passed: &mut dyn FnMut(u32, u32),
+    ) -> Result<(Running, View, f64), ShowerError> {
         self.begin(scenery)?;
         let view = self.viewed(frame_scene.view()?);
         let open_s = time_s - 0.5 * view.shutter_s;
@@ -158,8 +292,8 @@ impl Stepped {
         let step = (open_s * STEPS_PER_S + 1.0e-6).floor() as i64;
         let memory =
             if self.forgets() { (self.options.oldest_s * STEPS_PER_S).ceil() as i64 + 1 } else { REMEMBERED };
-        let last = self.running.take().filter(|last| (0..=memory).contains(&(step - last.step)));
-        let mut running = match last {
+        let last = self.running.take().filter(|last| last.drops.are_on(device));
+        let mut running = match last.filter(|last| (0..=memory).contains(&(step - last.step))) {
             Some(last) => last,
             None => {
                 let first = if self.forgets() {
@@ -169,7 +303,7 @@ impl Stepped {
                 } else {
                     step - STEPS_BEFORE
                 };
-                self.started(scenery, first.div_euclid(STEPS_PER_WIND) * STEPS_PER_WIND)?
+                self.started(device, scenery, first.div_euclid(STEPS_PER_WIND) * STEPS_PER_WIND)?
             }
         };
         let all = (step - running.step) as u32;
@@ -177,33 +311,33 @@ impl Stepped {
             running.step += 1;
             let now_s = running.step as f64 / STEPS_PER_S;
             if running.step % STEPS_PER_WIND == 0 || std::mem::take(&mut running.is_stale) {
-                running.step_scenery = self.step_scenery(scenery, now_s, Some(running.step_scenery))?;
+                let before = Some(running.step_scenery);
+                running.step_scenery = self.step_scenery(scenery, now_s, before, device.is_none())?;
             }
             let view = self.view(scenery, now_s)?;
             let air = self.weather.wind.air().prepared(now_s);
-            let step_scenery = &running.step_scenery;
-            let moment = StepInput {
-                field: step_scenery.field(),
-                map: step_scenery.map.as_ref(),
-                air: Some(&air),
-                ..StepInput::new(&view, step_scenery.origin, air.velocity().as_vec3())
-            };
-            running.simulation.advance(1.0 / STEPS_PER_S, &moment)?;
+            running.drops.step(&running.step_scenery, &view, &air)?;
             passed(done, all);
         }
         let after_s = (time_s - running.step as f64 / STEPS_PER_S).max(0.0);
-        let visible = if scenery.is_still() {
-            running.simulation.visible_after(after_s, &view, running.step_scenery.map.as_ref())
-        } else {
-            // Where things are in this picture; the next step is not told of it.
-            let wind = self.weather.wind.air().velocity(time_s).as_vec3();
-            let made = self.map(frame_scene, false, &[view], wind, None)?;
-            let map = made.as_ref().and_then(|(_, map)| map.as_ref());
-            let map = map.filter(|_| frame_scene.origin == running.step_scenery.origin);
-            running.simulation.visible_after(after_s, &view, map.or(running.step_scenery.map.as_ref()))
-        };
-        self.running = Some(running);
-        Ok(visible)
+        Ok((running, view, after_s))
+    }
+
+    /// The map of where things are in a picture of a scene in which they move; the next step is not told of it. `None` where that of
+    /// the steps serves.
+    fn map_now(
+        &self,
+        scenery: &dyn Scenery,
+        frame_scene: &FrameScene,
+        view: &View,
+        step_scenery: &StepScenery,
+        time_s: f64,
+    ) -> Result<Option<CollisionMap>, ShowerError> {
+        if scenery.has_still_things() || frame_scene.origin != step_scenery.origin {
+            return Ok(None);
+        }
+        let wind = self.weather.wind.air().velocity(time_s).as_vec3();
+        Ok(self.map(frame_scene, false, &[*view], wind, None)?.and_then(|(_, map)| map))
     }
 
     /// The wind that a step at a time meets.
@@ -213,13 +347,13 @@ impl Stepped {
         time_s: f64,
     ) -> Result<Option<WindField>, ShowerError> {
         self.begin(scenery)?;
-        Ok(self.step_scenery(scenery, time_s, None)?.wind.map(|wind| wind.field))
+        let wind = self.step_scenery(scenery, time_s, None, true)?.wind;
+        Ok(wind.and_then(|wind| wind.field.clone()))
     }
 
-    pub(super) fn measured_rate_mm_h(&self) -> f64 {
-        let measured =
-            |running: &Running| running.simulation.measured_rate_mm_h(running.step_scenery.map.as_ref());
-        self.running.as_ref().map_or(0.0, measured)
+    pub(super) fn measured_rate_mm_h(&self) -> Result<f64, ShowerError> {
+        let Some(running) = &self.running else { return Ok(0.0) };
+        running.drops.measured_rate_mm_h(running.step_scenery.map.as_deref())
     }
 
     /// Sets what is asked once: at time 0, so that it does not depend on the first picture.
@@ -263,33 +397,33 @@ impl Stepped {
     }
 
     /// A rain that begins at a step.
-    fn started(&self, scenery: &dyn Scenery, step: i64) -> Result<Running, ShowerError> {
+    fn started(
+        &self,
+        device: Option<&StepDevice>,
+        scenery: &dyn Scenery,
+        step: i64,
+    ) -> Result<Running, ShowerError> {
         let time_s = step as f64 / STEPS_PER_S;
-        let step_scenery = self.step_scenery(scenery, time_s, None)?;
+        let step_scenery = self.step_scenery(scenery, time_s, None, true)?;
         let view = self.view(scenery, time_s)?;
         let air = self.weather.wind.air().prepared(time_s);
-        let moment = StepInput {
-            field: step_scenery.field(),
-            map: step_scenery.map.as_ref(),
-            air: Some(&air),
-            ..StepInput::new(&view, step_scenery.origin, air.velocity().as_vec3())
-        };
         let options = SimulationOptions {
             first_step: (STEP_ZERO + step).clamp(1, i64::from(u32::MAX)) as u32,
             // What a view may hold is in its least diameter.
             max_drops: if self.forgets() { 1 << 28 } else { self.options.max_drops },
             ..self.options.clone()
         };
-        let simulation = Simulation::new(&self.law, &options, &moment)?;
-        Ok(Running { simulation, step, step_scenery, is_stale: false })
+        let simulation = Simulation::new(&self.law, &options, &step_scenery.input(&view, &air))?;
+        Ok(Running { drops: StepDrops::new(simulation, device)?, step, step_scenery, is_stale: false })
     }
 
-    /// Wind and map for the steps from a time on until they are made anew.
+    /// Wind and map for the steps from a time on until they are made anew. `has_cells`: the CPU fills the cells of the wind.
     fn step_scenery(
         &self,
         scenery: &dyn Scenery,
         time_s: f64,
         before: Option<StepScenery>,
+        has_cells: bool,
     ) -> Result<StepScenery, ShowerError> {
         let frame_scene = scenery.frame_scene(time_s)?;
         let wind = self.weather.wind.air().velocity(time_s).as_vec3();
@@ -307,18 +441,18 @@ impl Stepped {
             wind: None,
             origin: frame_scene.origin,
         });
-        let made = self.map(&frame_scene, scenery.is_still(), &views, wind, before.made_of)?;
+        let made = self.map(&frame_scene, scenery.has_still_things(), &views, wind, before.made_of)?;
         // A field knows the map that it was made with.
         let same_map = matches!(made, Some((_, None))) || (made.is_none() && before.made_of.is_none());
         let known = before.wind.filter(|_| same_map && before.origin == frame_scene.origin);
         let (made_of, map) = match made {
-            Some((made_of, map)) => (Some(made_of), map.or(before.map)),
+            Some((made_of, map)) => (Some(made_of), map.map(Arc::new).or(before.map)),
             None => (None, None),
         };
         let wind = if uniform {
             None
         } else {
-            Some(self.blown(&frame_scene, &views[0], time_s, map.as_ref(), known)?)
+            Some(self.blown(&frame_scene, &views[0], time_s, map.as_deref(), known, has_cells)?)
         };
         Ok(StepScenery { made_of, map, wind, origin: frame_scene.origin })
     }
@@ -349,30 +483,34 @@ impl Stepped {
         Ok(Some((made_of, Some(map))))
     }
 
-    /// The wind at a time in the cells round the eye; what is `known` where it is the same.
+    /// The wind at a time in the cells around the eye; what is `known` where it is the same.
     fn blown(
         &self,
         frame_scene: &FrameScene,
         view: &View,
         time_s: f64,
         map: Option<&CollisionMap>,
-        known: Option<Blown>,
-    ) -> Result<Blown, ShowerError> {
+        known: Option<Arc<Blown>>,
+        has_cells: bool,
+    ) -> Result<Arc<Blown>, ShowerError> {
         let wind = &self.weather.wind;
         let grid = self.weather.wind_box.grid(view.eye)?;
         let (parts, modes) = (wind.at(time_s), wind.modes(time_s, &grid));
-        if let Some(known) = known
+        if let Some(known) = &known
             && (&known.parts, &known.modes, known.grid) == (&parts, &modes, grid)
+            && known.field.is_some() == has_cells
         {
-            return Ok(known);
+            return Ok(Arc::clone(known));
         }
         let origin = frame_scene.origin.as_vec3();
-        let mask = match map {
-            Some(map) => WindMask::from_fn(&grid, |at| map.inside(at - origin)),
-            None => WindMask::open(&grid),
+        let mask = match (known.filter(|known| known.grid == grid), map) {
+            (Some(known), _) => Arc::clone(&known.mask),
+            (None, Some(map)) => Arc::new(WindMask::from_fn(&grid, |at| map.inside(at - origin))),
+            (None, None) => Arc::new(WindMask::open(&grid)),
         };
-        let field = WindField::with_turbulence(&grid, &parts, &modes, &mask)?.relative_to(frame_scene.origin);
-        Ok(Blown { parts, modes, grid, field })
+        let cells = || WindField::with_turbulence(&grid, &parts, &modes, &mask);
+        let field = has_cells.then(cells).transpose()?.map(|field| field.relative_to(frame_scene.origin));
+        Ok(Arc::new(Blown { parts, modes, grid, mask, field }))
     }
 
     /// Part of the scene that the map has to cover; `None` without obstacles.

@@ -1,0 +1,141 @@
+//! Drops of a state of stepped rain that a picture shows, listed by a device: those that
+//! [`Simulation::visible_after`](crate::simulation::Simulation::visible_after) lists on the CPU.
+
+use std::sync::OnceLock;
+
+use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, wgpu, workgroups_for};
+use downpour_shaders::sim::step_list::{STEP_LIST_CLEAR_KERNEL, STEP_LIST_KERNEL};
+
+use super::list::made_once;
+use super::simulation::StepBuffers;
+use super::{CollisionMapOnGpu, DropListOnGpu, GpuSimError};
+use crate::field::EyeDrop;
+use crate::plan::Plan;
+use crate::resolved::Resolved;
+use crate::step_list::StepListFrame;
+use crate::view::View;
+
+/// A picture of stepped rain.
+#[derive(Clone, Copy, Debug)]
+pub struct StepPicture<'a> {
+    /// The picture.
+    pub view: &'a View,
+    /// Time from the state to the picture, s: at least half of its exposure.
+    pub after_s: f64,
+    /// Collision map at the time of the picture.
+    pub map: Option<&'a CollisionMapOnGpu>,
+    /// A pane before the eye: its unit normal, away from the eye, and its distance, m; drops on the eye's side are not listed.
+    pub pane: Option<[f32; 4]>,
+    /// Drops that are known already, at the beginning of the list, such as those that drip.
+    pub known: &'a [EyeDrop],
+    /// Drops that may have room.
+    pub max_room: u32,
+}
+
+/// A kernel with its bindings and its workgroups.
+#[derive(Debug)]
+struct BoundKernel {
+    kernel: ComputeKernel,
+    bindings: wgpu::BindGroup,
+    groups: [u32; 3],
+}
+
+impl BoundKernel {
+    fn dispatch(&self) -> Dispatch<'_> {
+        self.kernel.dispatch(&self.bindings, self.groups)
+    }
+}
+
+/// The kernels, made when they are first asked for.
+#[derive(Clone, Debug, Default)]
+pub(super) struct StepListKernels {
+    clear: OnceLock<ComputeKernel>,
+    /// Without and with a collision map.
+    list: [OnceLock<ComputeKernel>; 2],
+}
+
+/// The list of a picture's drops, ready to be made.
+#[derive(Debug)]
+pub struct StepListPass {
+    clear: BoundKernel,
+    pieces: Vec<BoundKernel>,
+    list: DropListOnGpu,
+    resolved: Resolved,
+}
+
+impl StepListKernels {
+    /// Makes ready to list the drops of a state.
+    pub(super) fn prepare(
+        &self,
+        buffers: &impl BufferSource,
+        plan: &Plan,
+        state: &StepBuffers<'_>,
+        picture: &StepPicture<'_>,
+    ) -> Result<StepListPass, GpuSimError> {
+        picture.view.check()?;
+        let gpu = buffers.gpu();
+        let slots: u32 = state.pieces.iter().map(|piece| piece.count).sum();
+        let room = slots.min(picture.max_room.saturating_sub(picture.known.len() as u32)).max(1);
+        let list = DropListOnGpu::new(buffers, picture.known, room)?;
+        let frame = StepListFrame {
+            pane: picture.pane.unwrap_or_default(),
+            known: list.known(),
+            room,
+            ..StepListFrame::new(plan, picture.view, picture.after_s)
+        };
+        let kernel = &self.list[usize::from(picture.map.is_some())];
+        let kernel = made_once(kernel, || {
+            let collides = f64::from(u8::from(picture.map.is_some()));
+            ComputeKernel::new(gpu, &STEP_LIST_KERNEL, &[("STEP_FIELD", 0.0), ("STEP_COLLIDES", collides)])
+        })?;
+        let (map, texels) =
+            picture.map.map_or((state.nowhere, state.nothing), |map| (map.frame(), map.texels()));
+        let listed = (12, list.drops());
+        let counted = (13, list.counts());
+        let mut pieces = Vec::new();
+        for piece in &state.pieces {
+            let frame = StepListFrame { count: piece.count, first: piece.first, ..frame };
+            let frame = buffers.uniform("step list frame", &frame)?;
+            let of_state = [(1, piece.positions), (2, piece.motions), (3, state.tables)];
+            let others = [(8, map), (9, texels), (11, &frame), listed, counted];
+            let bindings = kernel.bind_at(buffers, of_state.into_iter().chain(others))?;
+            let groups = workgroups_for(piece.count);
+            pieces.push(BoundKernel { kernel: kernel.clone(), bindings, groups });
+        }
+        let kernel = made_once(&self.clear, || ComputeKernel::new(gpu, &STEP_LIST_CLEAR_KERNEL, &[]))?;
+        let frame = buffers.uniform("step list frame", &frame)?;
+        let bindings = kernel.bind_at(buffers, [(6, state.counts), (11, &frame), listed, counted])?;
+        let clear = BoundKernel { kernel: kernel.clone(), bindings, groups: workgroups_for(room) };
+        Ok(StepListPass { clear, pieces, list, resolved: plan.resolved(picture.view) })
+    }
+}
+
+/// Drops of a state on the device.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StepPiece<'a> {
+    pub(super) positions: &'a wgpu::Buffer,
+    pub(super) motions: &'a wgpu::Buffer,
+    /// Number of drops or slots, and the number of the first.
+    pub(super) count: u32,
+    pub(super) first: u32,
+}
+
+impl StepListPass {
+    /// The dispatches in stages, one after another.
+    #[must_use]
+    pub fn stages(&self) -> [Vec<Dispatch<'_>>; 2] {
+        [vec![self.clear.dispatch()], self.pieces.iter().map(BoundKernel::dispatch).collect()]
+    }
+
+    /// The list that they fill.
+    #[must_use]
+    pub fn list(&self) -> &DropListOnGpu {
+        &self.list
+    }
+
+    /// Limits of the list.
+    #[must_use]
+    pub fn resolved(&self) -> &Resolved {
+        &self.resolved
+    }
+}
