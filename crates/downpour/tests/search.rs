@@ -127,3 +127,54 @@ fn a_frame_has_the_same_bits_each_time() -> Result<(), Box<dyn Error>> {
     }
     Ok(())
 }
+
+/// A weather of a tornado and turbulence, whose rain goes step by step.
+const TORNADO: &str = "tests/goldens/weather/tornado.toml";
+
+/// A renderer of the tornado, with so much rain, before an eye low above the road.
+fn tornado(device: Device, first_s: f64) -> Result<Renderer, Box<dyn Error>> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let models = root.join("assets/scenes/plain");
+    let mut source = Source::read(&root.join(TORNADO), &[&models], &mut Budget::default())?;
+    source.weather.size = [256, 144];
+    source.weather.camera.fov = Some(40.0f64.to_radians());
+    source.weather.rain.rate_mm_h = 500.0;
+    (source.weather.rain.bounce.fraction, source.weather.rain.bounce.size) = (0.5, 1.0);
+    let options = RendererOptions { samples: 1, sky_rays: 0, first_s, ..RendererOptions::default() };
+    let mut renderer = Renderer::new(source.weather, source.loaded, options, device)?;
+    let position = DVec3::new(0.9, 0.3, 4.2);
+    renderer.set_camera(CameraPose { position, forward: DVec3::new(0.1, 0.02, -1.0).normalize() })?;
+    Ok(renderer)
+}
+
+/// Drops that a device has carried through a tornado for some hundred steps are those of the CPU, but for those that a last bit sent
+/// another way at an edge.
+#[test]
+fn a_device_steps_the_drops_of_the_cpu() -> Result<(), Box<dyn Error>> {
+    let Some(gpu) = device::gpu(LimitSet::Adapter) else { return Ok(()) };
+    let time_s = 0.4;
+    let on_cpu = tornado(Device::cpu(), time_s)?.frame(time_s)?;
+    let mut renderer = tornado(Device::gpu(gpu.clone(), false), time_s)?;
+    let on_gpu = renderer.frame(time_s)?;
+    assert_eq!(on_gpu.drops.resolved, on_cpu.drops.resolved);
+    let (cpu, device) = (by_id(&on_cpu), by_id(&on_gpu));
+    let bounced = cpu.values().filter(|drop| drop.kind == DropKind::Bounced).count();
+    println!("{} drops of {}, {bounced} droplets", cpu.len(), on_cpu.drops.simulated);
+    assert!(cpu.len() > 500 && bounced > 5, "{} drops, {bounced} droplets", cpu.len());
+    let both: Vec<_> = cpu.iter().filter_map(|(id, drop)| Some((drop, device.get(id)?))).collect();
+    let most = cpu.len() / 100;
+    assert!(cpu.len() - both.len() <= most && device.len() - both.len() <= most, "{} of both", both.len());
+    let off = |(a, b): &&(&FallingDrop, &FallingDrop)| {
+        (a.position - b.position).length() > 1.0e-3 || a.kind != b.kind || a.diameter != b.diameter
+    };
+    assert!(both.iter().filter(off).count() <= most);
+    // A picture of a time is the same whatever was made before, and the way there moves few bytes.
+    let later = renderer.frame(0.5)?;
+    let alone = tornado(Device::gpu(gpu, false), 0.5)?.frame(0.5)?;
+    assert!(later.drops == alone.drops);
+    renderer.display(0.52)?;
+    let device = renderer.display(0.54)?.device.ok_or("a device")?;
+    println!("{device:?}");
+    assert!(device.buffers_made == 0 && device.bytes_uploaded < 256 << 10, "{device:?}");
+    Ok(())
+}

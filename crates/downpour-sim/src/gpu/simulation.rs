@@ -3,6 +3,8 @@
 //! The drops of a view are in slots, of which there are more than drops: drops that are gone leave their slots to
 //! those that enter. The slot of a drop depends on the device; the set of drops does not.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use bytemuck::Zeroable as _;
 use downpour_drop::distribution::DropSizeDistribution;
 use downpour_gpu::timing::PassTime;
@@ -124,6 +126,8 @@ pub struct GpuSimulation {
     lists: StepListKernels,
     /// What is written and bound in each step.
     pool: BufferPool,
+    /// Bytes that were written.
+    written: AtomicU64,
 }
 
 /// Buffers that the list of a picture's drops reads.
@@ -182,6 +186,7 @@ impl GpuSimulation {
             kernels: [const { None }; 4],
             lists: StepListKernels::default(),
             pool: BufferPool::new(gpu),
+            written: AtomicU64::new(0),
             gpu: gpu.clone(),
             plan,
         })
@@ -293,13 +298,12 @@ impl GpuSimulation {
         kernels: &'a Kernels,
         bound: &'a [(wgpu::BindGroup, Option<wgpu::BindGroup>)],
     ) -> Vec<Dispatch<'a>> {
-        let queue = self.gpu.queue();
         let mut work = Vec::new();
         let pieces = self.pieces.len() as u32;
         let open = self.plan.is_open();
         if !turn.regions.is_empty() {
             let first = u64::from(turn.frame.regions_first) * size_of::<u32>() as u64;
-            queue.write_buffer(&self.tables, first, bytemuck::cast_slice(&turn.regions));
+            self.write(&self.tables, first, bytemuck::cast_slice(&turn.regions));
         }
         let groups = |count: u32| {
             let groups = count.div_ceil(GROUP);
@@ -308,13 +312,29 @@ impl GpuSimulation {
         for (number, (piece, (step, enter))) in (0..).zip(self.pieces.iter().zip(bound)) {
             let first = if open { 0 } else { piece.first };
             let frame = StepFrame { first, count: piece.count, pieces, piece: number, ..turn.frame };
-            queue.write_buffer(&piece.frame, 0, bytemuck::bytes_of(&frame));
+            self.write(&piece.frame, 0, bytemuck::bytes_of(&frame));
             work.push(kernels.step.dispatch(step, groups(piece.count)));
             if let (Some(kernel), Some(bindings), 1..) = (&kernels.enter, enter, turn.frame.candidates) {
                 work.push(kernel.dispatch(bindings, groups(turn.frame.candidates.div_ceil(pieces))));
             }
         }
         work
+    }
+
+    fn write(&self, buffer: &wgpu::Buffer, offset: u64, bytes: &[u8]) {
+        self.count_written(bytes.len() as u64);
+        self.gpu.queue().write_buffer(buffer, offset, bytes);
+    }
+
+    /// Counts bytes that were written for the rain to the device elsewhere, such as those of its collision map.
+    pub fn count_written(&self, bytes: u64) {
+        self.written.fetch_add(bytes, Ordering::Relaxed);
+    }
+
+    /// Number of bytes that were written since the last call.
+    #[must_use]
+    pub fn take_written(&self) -> u64 {
+        self.written.swap(0, Ordering::Relaxed)
     }
 
     /// Events since the last call. Impacts are sorted by the drops' numbers; if there are more than the buffer holds,

@@ -141,8 +141,9 @@ impl FoundReadback {
             .collect();
         // The device lists them in any order.
         let key = |&place: &u32| {
-            let EyeDrop { id, id_low, diameter, .. } = drops[place as usize];
-            (id ^ id_low, id_low, diameter.to_bits(), place)
+            let EyeDrop { id, id_low, diameter, offset, .. } = drops[place as usize];
+            // Droplets that rebounded in one step from drops that entered in one step and are alike have one id.
+            (id ^ id_low, id_low, diameter.to_bits(), offset.map(f32::to_bits), place)
         };
         places.par_sort_unstable_by_key(key);
         *distances = places.iter().filter_map(|&place| distances.get(place as usize).copied()).collect();

@@ -258,6 +258,7 @@ impl PictureRenderer {
             }
         };
         let plate = self.scene.plate_around(pool, &uploaded.0, &frame, &rain, environment)?;
+        let mut stepped_bytes = 0;
         let (falling, count, search) = passes.host("drops to the device", || match drops {
             PictureDrops::Listed(drops) => {
                 let falling: Vec<EyeDrop> = drops.par_iter().map(|drop| EyeDrop::new(drop, eye)).collect();
@@ -268,6 +269,7 @@ impl PictureRenderer {
                 Ok::<_, GpuPictureError>(listed(FallingPass::Field(search)))
             }
             PictureDrops::Stepped(simulation, picture) => {
+                stepped_bytes = simulation.take_written();
                 Ok(listed(FallingPass::Stepped(simulation.list(pool, &picture)?)))
             }
         })?;
@@ -324,7 +326,8 @@ impl PictureRenderer {
             *kept = stays;
         }
         drop(kept);
-        let device = DeviceUse { bytes_uploaded: pool.written(), buffers_made: pool.made() - made_before };
+        let (bytes_uploaded, buffers_made) = (pool.written() + stepped_bytes, pool.made() - made_before);
+        let device = DeviceUse { bytes_uploaded, buffers_made };
         Ok(PictureOnGpu {
             gpu: self.gpu.clone(),
             readbacks: self.readbacks.clone(),

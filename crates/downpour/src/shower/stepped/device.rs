@@ -127,6 +127,7 @@ impl OnGpu {
             (_, None) => None,
             (Some(known), Some(map)) if Arc::ptr_eq(&known.0, map) => Some(known),
             (Some((_, on)), Some(map)) if on.size() == map.frame().size => {
+                self.simulation.count_written(size_of_val(map.texels()) as u64);
                 on.set(&self.gpu, map)?;
                 Some((Arc::clone(map), on))
             }
@@ -143,12 +144,23 @@ impl OnGpu {
                 self.field = Some((of, field));
                 return Ok(());
             }
-            Some((_, field)) if field.has_room(&wind.grid, matrices, wind.modes.len()) => field,
-            _ => GpuWindField::new(&self.gpu, &wind.grid, matrices, wind.modes.len())?,
+            Some((of, field)) if field.has_room(&wind.grid, matrices, wind.modes.len()) => {
+                if !Arc::ptr_eq(&of.mask, &wind.mask) {
+                    self.simulation.count_written(size_of_val(wind.mask.openness()) as u64);
+                    field.set_mask(&wind.mask)?;
+                }
+                field
+            }
+            _ => {
+                let made = GpuWindField::new(&self.gpu, &wind.grid, matrices, wind.modes.len())?;
+                made.set_mask(&wind.mask)?;
+                made
+            }
         };
         field.set_grid(&wind.grid)?;
-        field.set_mask(&wind.mask)?;
         field.update(&wind.parts, &wind.modes)?;
+        let bytes = size_of_val(&*wind.modes) + matrices * size_of::<[[f32; 4]; 3]>();
+        self.simulation.count_written(bytes as u64);
         self.field = Some((Arc::clone(wind), field));
         Ok(())
     }
