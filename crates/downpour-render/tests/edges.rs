@@ -1,8 +1,7 @@
 //! Edges of things far brighter than white, in pictures to look at.
 
-#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
-
 use downpour_math::color::srgb_to_linear;
+use downpour_math::ops;
 use downpour_render::tone::{Tone, ToneCurve, ToneEdges, ToneLayers, tone_picture};
 
 const SIZE: [u32; 2] = [48, 48];
@@ -66,7 +65,7 @@ fn an_edge_shows_its_coverage() {
 /// Nothing is brighter than white: the bytes are those of the linear mean.
 #[test]
 fn dim_and_flat_pictures_stay() {
-    let dim = picture(|x, y| [x / 48.0, y / 48.0, if x as u32 % 3 == 0 { 1.0 } else { 0.01 }]);
+    let dim = picture(|x, y| [x / 48.0, y / 48.0, if (x as u32).is_multiple_of(3) { 1.0 } else { 0.01 }]);
     let flat = picture(|_, _| [1000.0, 30.0, 2.0]);
     for (radiance, curve) in
         [&dim, &flat].into_iter().flat_map(|p| [(p, ToneCurve::Hue), (p, ToneCurve::KhronosNeutral)])
@@ -124,12 +123,24 @@ fn a_slanted_line_keeps_its_core() {
     }
 }
 
+/// The slope of something soft, a quarter as bright from pixel to pixel, keeps most of its light.
+#[test]
+fn slopes_of_soft_lights_stay() {
+    let soft = picture(|x, _| [0.02 + 500.0 * ops::exp2(-2.0 * (x - 24.0).abs()); 3]);
+    let [linear, aware] =
+        [ToneEdges::Linear, ToneEdges::ToneAware].map(|edges| shown(&soft, &[], ToneCurve::Hue, edges));
+    let kept = linear.iter().zip(&aware).map(|(&linear, &aware)| light(aware) / light(linear));
+    let least = kept.fold(1.0, f32::min);
+    println!("{least} of a slope's light is kept");
+    assert!(least > 0.7, "{least}");
+}
+
 /// A pixel is never darker than the darkest of its neighbors, nor brighter than its linear mean: no ring.
 #[test]
 fn no_ring_appears() {
     let disk = picture(|x, y| {
-        let covered = coverage(x, y, 4, |x, y| (x - 24.3).hypot(y - 23.8) < 9.0);
-        let frame = coverage(x, y, 4, |x, y| (x - 24.3).hypot(y - 23.8) < 11.5);
+        let covered = coverage(x, y, 4, |x, y| ops::hypot(x - 24.3, y - 23.8) < 9.0);
+        let frame = coverage(x, y, 4, |x, y| ops::hypot(x - 24.3, y - 23.8) < 11.5);
         [
             0.05 + 2.0 * (frame - covered) + 300.0 * covered,
             0.05 + 1.5 * (frame - covered) + 200.0 * covered,
@@ -155,11 +166,12 @@ fn no_ring_appears() {
 fn glow_is_no_coverage() {
     let center = 23.5f32;
     let light_at =
-        |x: f32, y: f32, radius: f32| coverage(x, y, 2, |x, y| (x - center).hypot(y - center) < radius);
+        |x: f32, y: f32, radius: f32| coverage(x, y, 2, |x, y| ops::hypot(x - center, y - center) < radius);
     for radius in [0.4, 5.3] {
         let glow = picture(|x, y| {
-            let distance = (x + 0.5 - center).hypot(y + 0.5 - center);
-            let fall = 4.0 / (1.0 + (distance - radius).max(0.0)).powi(2);
+            let distance = ops::hypot(x + 0.5 - center, y + 0.5 - center);
+            let outside = 1.0 + (distance - radius).max(0.0);
+            let fall = 4.0 / (outside * outside);
             [fall - 10.0 * light_at(x, y, radius); 4]
         });
         let radiance: Vec<[f32; 3]> = picture(|x, y| 0.02 + 1000.0 * light_at(x, y, radius))

@@ -33,6 +33,10 @@ shared_constants! {
         TONE_EDGE_FLOOR: f32 = 0.06;
         /// Coverage that is an edge altogether even if the pixel does not clip; a quarter of it may be texture.
         TONE_EDGE_COVERAGE: f32 = 0.015625;
+        /// Rise of the dark side over the pixel behind it from which on it is a slope altogether; a quarter of it may be texture.
+        TONE_EDGE_SLOPE: f32 = 2.0;
+        /// Sum of channels that is added to the pixel behind the dark side where that rise is divided by it.
+        TONE_EDGE_SLOPE_FLOOR: f32 = 0.5;
         /// The neutral curve of Khronos.
         TONE_KHRONOS: u32 = 0;
         /// The curve that keeps hues.

@@ -168,22 +168,33 @@ fn tone_sum(color: vec3f) -> f32 {
     return color.x + color.y + color.z;
 }
 
-// Weight from 0 to 1 with which a pixel is the edge of something brighter than white: of its color, its dark and its bright neighbor,
-// and the coverage that follows from them.
-fn tone_edge_weight(color: vec3f, dark: vec3f, bright: vec3f, coverage: f32) -> f32 {
+// Weight from 0 to 1 with which a pixel is the edge of something brighter than white: of its color, its dark neighbor and the pixel behind
+// that one, its bright neighbor, and the coverage that follows from them.
+fn tone_edge_weight(color: vec3f, dark: vec3f, behind: vec3f, bright: vec3f, coverage: f32) -> f32 {
     let sum = tone_sum(dark);
     let above = tone_rise(TONE_EDGE_WHITE, TONE_EDGE_BRIGHT, max(max(bright.x, bright.y), bright.z));
     let contrast = (tone_sum(color) - sum) / (sum + TONE_EDGE_FLOOR);
     let differs = tone_rise(0.25 * TONE_EDGE_CONTRAST, TONE_EDGE_CONTRAST, contrast);
     let covered = tone_rise(0.25 * TONE_EDGE_COVERAGE, TONE_EDGE_COVERAGE, coverage);
     let clips = tone_rise(TONE_START, TONE_EDGE_CLIPPED, max(max(color.x, color.y), color.z));
-    return above * differs * max(covered, clips);
+    // A dark side that rises toward the edge is the slope of something soft.
+    let slope = (sum - tone_sum(behind)) / (tone_sum(behind) + TONE_EDGE_SLOPE_FLOOR);
+    let is_even = 1.0 - tone_rise(0.25 * TONE_EDGE_SLOPE, TONE_EDGE_SLOPE, slope);
+    return above * differs * is_even * max(covered, clips);
 }
 
 // What a pair of neighbors takes from a pixel, times the pair's weight among pairs, and that weight. `toned` is the pixel's color through
-// the curve; the others are exposed colors from 0 to TONE_MAX_CHANNEL: of the pixel, its dark neighbor, its bright neighbor and the pixel
-// beyond that one.
-fn tone_edge(toned: vec3f, color: vec3f, dark: vec3f, bright: vec3f, beyond: vec3f, curve: u32) -> vec4f {
+// the curve; the others are exposed colors from 0 to TONE_MAX_CHANNEL: of the pixel, its dark neighbor and the pixel behind that one, its
+// bright neighbor and the pixel beyond that one.
+fn tone_edge(
+    toned: vec3f,
+    color: vec3f,
+    dark: vec3f,
+    behind: vec3f,
+    bright: vec3f,
+    beyond: vec3f,
+    curve: u32,
+) -> vec4f {
     let sum = tone_sum(dark);
     let covered = tone_sum(color) - sum;
     let whole = min(tone_sum(bright), tone_sum(beyond)) - sum;
@@ -191,7 +202,7 @@ fn tone_edge(toned: vec3f, color: vec3f, dark: vec3f, bright: vec3f, beyond: vec
         return vec4f(0.0);
     }
     let coverage = covered / whole;
-    let weight = tone_edge_weight(color, dark, bright, coverage);
+    let weight = tone_edge_weight(color, dark, behind, bright, coverage);
     if weight <= 0.0 {
         return vec4f(0.0);
     }
@@ -264,10 +275,22 @@ fn tone_edges(at: vec2i, toned: vec3f) -> vec3f {
         }
         let way = select(-step, step, is_ahead);
         // Glow is no coverage: the dark side has as much of it as there is around the pixel.
-        let around = tone_glow_around(at) - tone_glowing(at - way);
-        let dark = min(plain + around, vec3f(TONE_MAX_CHANNEL));
+        let glow = tone_glow_around(at);
+        let dark = plain + (glow - tone_glowing(at - way));
+        let behind_it = at - way * 2;
+        let deep = tone_seen(behind_it) + (glow - tone_glowing(behind_it));
+        let most = vec3f(TONE_MAX_CHANNEL);
         let beyond = tone_seen(at + way * 2);
-        taken += tone_edge(toned, color, dark, bright, beyond, tone_frame.curve);
+        let pair_takes = tone_edge(
+            toned,
+            color,
+            min(dark, most),
+            clamp(deep, vec3f(0.0), most),
+            bright,
+            beyond,
+            tone_frame.curve,
+        );
+        taken += pair_takes;
     }
     // The constant is far below a step of the display.
     return toned - taken.xyz / (taken.w + 1.0e-12);

@@ -7,13 +7,13 @@
 //! Of the four pairs of neighbors that diagonal which crosses a straight edge has both sides whole: a pixel is as wide across any edge as
 //! that step is long. So pairs with the strongest correction count most. What is no such edge stays: a pixel of a plateau, whose dark
 //! neighbor is as bright as itself; points of light and the core of lines of one pixel, beyond whose bright neighbor it is dark again;
-//! the texture of what is dim; glow, which is even over a pixel. All weights are smooth, so that nothing pops from frame to frame, and a
+//! the texture of what is dim; the slope of what is soft, whose dark side is not even; glow, which is even over a pixel. All weights are smooth, so that nothing pops from frame to frame, and a
 //! corrected pixel is between its dark neighbor and itself, so that no ring appears.
 
 use downpour_math::color::color_luminance;
 use downpour_shaders::render::tone::{
     TONE_EDGE_BRIGHT, TONE_EDGE_CLIPPED, TONE_EDGE_CONTRAST, TONE_EDGE_COVERAGE, TONE_EDGE_FLOOR,
-    TONE_EDGE_WHITE, TONE_MAX_CHANNEL, TONE_START,
+    TONE_EDGE_SLOPE, TONE_EDGE_SLOPE_FLOOR, TONE_EDGE_WHITE, TONE_MAX_CHANNEL, TONE_START,
 };
 use glam::{IVec2, Vec3, Vec4};
 
@@ -32,24 +32,35 @@ pub fn tone_sum(color: Vec3) -> f32 {
     color.x + color.y + color.z
 }
 
-/// Weight from 0 to 1 with which a pixel is the edge of something brighter than white: of its color, its dark and its bright neighbor,
-/// and the coverage that follows from them.
+/// Weight from 0 to 1 with which a pixel is the edge of something brighter than white: of its color, its dark neighbor and the pixel behind
+/// that one, its bright neighbor, and the coverage that follows from them.
 #[must_use]
-pub fn tone_edge_weight(color: Vec3, dark: Vec3, bright: Vec3, coverage: f32) -> f32 {
+pub fn tone_edge_weight(color: Vec3, dark: Vec3, behind: Vec3, bright: Vec3, coverage: f32) -> f32 {
     let sum = tone_sum(dark);
     let above = tone_rise(TONE_EDGE_WHITE, TONE_EDGE_BRIGHT, bright.max_element());
     let contrast = (tone_sum(color) - sum) / (sum + TONE_EDGE_FLOOR);
     let differs = tone_rise(0.25 * TONE_EDGE_CONTRAST, TONE_EDGE_CONTRAST, contrast);
     let covered = tone_rise(0.25 * TONE_EDGE_COVERAGE, TONE_EDGE_COVERAGE, coverage);
     let clips = tone_rise(TONE_START, TONE_EDGE_CLIPPED, color.max_element());
-    above * differs * covered.max(clips)
+    // A dark side that rises toward the edge is the slope of something soft.
+    let slope = (sum - tone_sum(behind)) / (tone_sum(behind) + TONE_EDGE_SLOPE_FLOOR);
+    let is_even = 1.0 - tone_rise(0.25 * TONE_EDGE_SLOPE, TONE_EDGE_SLOPE, slope);
+    above * differs * is_even * covered.max(clips)
 }
 
 /// What a pair of neighbors takes from a pixel, times the pair's weight among pairs, and that weight. `toned` is the pixel's color through
-/// the curve; the others are exposed colors from 0 to `TONE_MAX_CHANNEL`: of the pixel, its dark neighbor, its bright neighbor and the pixel
-/// beyond that one.
+/// the curve; the others are exposed colors from 0 to `TONE_MAX_CHANNEL`: of the pixel, its dark neighbor and the pixel behind that one, its
+/// bright neighbor and the pixel beyond that one.
 #[must_use]
-pub fn tone_edge(toned: Vec3, color: Vec3, dark: Vec3, bright: Vec3, beyond: Vec3, curve: u32) -> Vec4 {
+pub fn tone_edge(
+    toned: Vec3,
+    color: Vec3,
+    dark: Vec3,
+    behind: Vec3,
+    bright: Vec3,
+    beyond: Vec3,
+    curve: u32,
+) -> Vec4 {
     let sum = tone_sum(dark);
     let covered = tone_sum(color) - sum;
     let whole = tone_sum(bright).min(tone_sum(beyond)) - sum;
@@ -57,7 +68,7 @@ pub fn tone_edge(toned: Vec3, color: Vec3, dark: Vec3, bright: Vec3, beyond: Vec
         return Vec4::ZERO;
     }
     let coverage = covered / whole;
-    let weight = tone_edge_weight(color, dark, bright, coverage);
+    let weight = tone_edge_weight(color, dark, behind, bright, coverage);
     if weight <= 0.0 {
         return Vec4::ZERO;
     }
@@ -133,10 +144,14 @@ pub fn tone_edges(layers: &ToneLayers<'_>, exposure: f32, curve: u32, at: IVec2,
         }
         let way = if is_ahead { step } else { -step };
         // Glow is no coverage: the dark side has as much of it as there is around the pixel.
-        let around = tone_glow_around(layers, exposure, at) - tone_glowing(layers, exposure, at - way);
-        let dark = (plain + around).min(Vec3::splat(TONE_MAX_CHANNEL));
+        let glow = tone_glow_around(layers, exposure, at);
+        let dark = plain + (glow - tone_glowing(layers, exposure, at - way));
+        let behind_it = at - way * 2;
+        let deep =
+            tone_seen(layers, exposure, behind_it) + (glow - tone_glowing(layers, exposure, behind_it));
+        let most = Vec3::splat(TONE_MAX_CHANNEL);
         let beyond = tone_seen(layers, exposure, at + way * 2);
-        taken += tone_edge(toned, color, dark, bright, beyond, curve);
+        taken += tone_edge(toned, color, dark.min(most), deep.clamp(Vec3::ZERO, most), bright, beyond, curve);
     }
     // The constant is far below a step of the display.
     toned - taken.truncate() / (taken.w + 1.0e-12)

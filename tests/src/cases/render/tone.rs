@@ -269,6 +269,9 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 LogUniform(0.02, 4.0),
                 LogUniform(0.02, 4.0),
                 LogUniform(0.02, 4.0),
+                Uniform(0.0, 0.5),
+                Uniform(0.0, 0.5),
+                Uniform(0.0, 0.5),
                 Uniform(0.0, 0.1),
                 Uniform(0.0, 0.1),
                 Uniform(0.0, 0.1),
@@ -279,8 +282,8 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             ],
             Tol::absolute(1.0e-5, "smooth rises of quotients of differences, and their products"),
             |a| {
-                let [color, dark, bright] = std::array::from_fn(|_| Vec3::from(a.f32s::<3>()));
-                tone_edge_weight(color, dark, bright, a.f32()).words()
+                let [color, dark, behind, bright] = std::array::from_fn(|_| Vec3::from(a.f32s::<3>()));
+                tone_edge_weight(color, dark, behind, bright, a.f32()).words()
             },
         ),
         FunctionCase::new(
@@ -296,6 +299,9 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 LogUniform(0.005, 2.0),
                 LogUniform(0.005, 2.0),
                 LogUniform(0.005, 2.0),
+                LogUniform(0.01, 0.5),
+                LogUniform(0.01, 0.5),
+                LogUniform(0.01, 0.5),
                 LogUniform(0.5, 1000.0),
                 LogUniform(0.5, 1000.0),
                 LogUniform(0.5, 1000.0),
@@ -309,8 +315,9 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 "the fourth power of a difference of the colors above, times that difference",
             ),
             |a| {
-                let [toned, color, dark, bright, beyond] = std::array::from_fn(|_| Vec3::from(a.f32s::<3>()));
-                tone_edge(toned, color, dark, bright, beyond, a.u32()).to_array().words()
+                let [toned, color, dark, behind, bright, beyond] =
+                    std::array::from_fn(|_| Vec3::from(a.f32s::<3>()));
+                tone_edge(toned, color, dark, behind, bright, beyond, a.u32()).to_array().words()
             },
         ),
     ]
