@@ -33,6 +33,14 @@ pub const BROKEN_KERNELS: &[(&str, Broken)] = &[
         "main_trace: water on a bank",
         Broken { function: "puddle_water_find", right: "upward > 0.7;", wrong: "upward > 0.72;" },
     ),
+    (
+        "main_tone: edges of lights, glow",
+        Broken {
+            function: "tone_edges",
+            right: "let beyond = tone_seen(at + way * 2);",
+            wrong: "let beyond = tone_seen(at + way);",
+        },
+    ),
 ];
 
 /// All that a function-level case has to see.

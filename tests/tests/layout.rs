@@ -128,7 +128,7 @@ fn hosts() -> Vec<Host> {
             count, max_rays, max_entries, first_entry, seed, amplitudes, medium, unused_1, unused_2, unused_3),
         host!(TilesFrame as "TilesFrame" in &render::rain::TILES, size, count, room),
         host!(ToneFrame as "ToneFrame" in &render::tone::TONE,
-            width, height, curve, exposure, has_glow, pad_a, pad_b, pad_c),
+            width, height, curve, exposure, has_glow, has_edges, pad_a, pad_b),
         host!(GlowLevel as "GlowLevel" in &render::glow::GLOW,
             size, coarse, first, coarse_first, weight, coarse_weight, fraction, extinction, is_added, offset),
         host!(MediumFrame as "MediumFrame" in &render::medium::MEDIUM,

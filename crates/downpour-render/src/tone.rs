@@ -2,19 +2,26 @@
 //!
 //! Colors up to 0.8 less the toe stay as they are in both curves ([`ToneCurve`]), brighter ones are compressed: by [`tone_hue`], which keeps
 //! hues, or by the neutral tone mapper of Khronos (2024, [`tone_neutral`]). Exposure is a factor of 2 per stop; automatic exposure puts
-//! the logarithmic mean of the picture at middle gray.
+//! the logarithmic mean of the picture at middle gray. Edges of things brighter than white are filtered behind the curve ([`tone_edges`]).
 
+mod edge;
 mod hue;
 
 use std::sync::LazyLock;
 
 use downpour_math::color::{color_luminance, linear_to_srgb};
 use downpour_math::ops;
-use downpour_shaders::render::tone::{TONE_DESATURATION, TONE_KEEPS_HUE, TONE_KHRONOS, TONE_START};
-use glam::Vec3;
+use downpour_shaders::render::tone::{
+    TONE_DESATURATION, TONE_EDGE_WHITE, TONE_KEEPS_HUE, TONE_KHRONOS, TONE_START,
+};
+use glam::{IVec2, Vec3};
 use rayon::prelude::*;
 
-pub use downpour_weather::ToneCurve;
+pub use downpour_weather::{ToneCurve, ToneEdges};
+pub use edge::{
+    tone_edge, tone_edge_weight, tone_edges, tone_glow_around, tone_glowing, tone_index, tone_rise,
+    tone_seen, tone_step, tone_sum,
+};
 pub use hue::{tone_hue, tone_linear, tone_oklab, tone_whiteness, tone_with_hue, tone_within};
 
 /// Middle gray.
@@ -120,6 +127,17 @@ pub fn tone_number(curve: ToneCurve) -> u32 {
     }
 }
 
+/// Way from radiance to a picture to look at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tone {
+    /// Factor from radiance to display.
+    pub exposure: f32,
+    /// Curve from exposed radiance to the display.
+    pub curve: ToneCurve,
+    /// Filter of the edges of things brighter than white.
+    pub edges: ToneEdges,
+}
+
 /// Constants of a picture to look at. The same layout as `ToneFrame` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -134,36 +152,75 @@ pub struct ToneFrame {
     pub exposure: f32,
     /// 1: there is glow.
     pub has_glow: u32,
+    /// 1: edges of things brighter than white are filtered ([`tone_edges`]).
+    pub has_edges: u32,
     /// Nothing.
     pub pad_a: u32,
     /// Nothing.
     pub pad_b: u32,
-    /// Nothing.
-    pub pad_c: u32,
 }
 
-/// A pixel of radiance as 8 bits each of red, green, blue and an alpha of 255, red lowest.
+/// A picture in linear radiance, rows from the top.
+#[derive(Clone, Copy, Debug)]
+pub struct ToneLayers<'a> {
+    /// Columns and rows.
+    pub size: [u32; 2],
+    /// Radiance of each pixel, glow included.
+    pub radiance: &'a [[f32; 3]],
+    /// Part of the radiance that glow has added; empty if nothing glows.
+    pub glow: &'a [[f32; 4]],
+}
+
+/// Applies a curve to an exposed color; the result is in [0, 1].
 #[must_use]
-pub fn tone_pixel(radiance: Vec3, exposure: f32, curve: u32) -> u32 {
-    let bright = radiance * exposure;
-    let toned = if curve == TONE_KEEPS_HUE { tone_hue(bright) } else { tone_neutral(bright) };
+pub fn tone_color(color: Vec3, curve: u32) -> Vec3 {
+    if curve == TONE_KEEPS_HUE { tone_hue(color) } else { tone_neutral(color) }
+}
+
+/// A color of the display as 8 bits each of red, green, blue and an alpha of 255, red lowest.
+#[must_use]
+pub fn tone_pack(toned: Vec3) -> u32 {
     let [r, g, b] = toned.to_array().map(tone_srgb).map(u32::from);
     r | g << 8 | b << 16 | 255 << 24
 }
 
 /// Converts linear radiance to an 8-bit picture.
+///
+/// # Panics
+/// If there are not as many pixels as the size says.
 #[must_use]
-pub fn tone_picture(pixels: &[[f32; 3]], exposure: f32, curve: ToneCurve) -> Vec<[u8; 3]> {
+pub fn tone_picture(layers: &ToneLayers<'_>, tone: &Tone) -> Vec<[u8; 3]> {
     let encoded = &*ENCODED;
-    let toned = match curve {
-        ToneCurve::KhronosNeutral => tone_neutral,
-        ToneCurve::Hue => tone_hue,
+    let curve = tone_number(tone.curve);
+    let [width, height] = layers.size.map(|count| count as usize);
+    assert_eq!(layers.radiance.len(), width * height, "as many pixels as the size says");
+    let exposed = |pixel: [f32; 3]| Vec3::from(pixel) * tone.exposure;
+    let bright: Vec<bool> = match tone.edges {
+        ToneEdges::Linear => vec![false; width * height],
+        ToneEdges::ToneAware => {
+            let is_bright = |&pixel: &[f32; 3]| exposed(pixel).max_element() > TONE_EDGE_WHITE;
+            layers.radiance.par_iter().with_min_len(4096).map(is_bright).collect()
+        }
     };
-    pixels
-        .par_iter()
-        .with_min_len(4096)
-        .map(|&pixel| toned(Vec3::from(pixel) * exposure).to_array().map(|v| encoded.of(v)))
-        .collect()
+    let row_of = |(y, row): (usize, &mut [[u8; 3]])| {
+        let rows = y.saturating_sub(1)..(y + 2).min(height);
+        let mut near = vec![false; width];
+        for of in bright[rows.start * width..rows.end * width].chunks_exact(width) {
+            near.iter_mut().zip(of).for_each(|(near, bright)| *near |= bright);
+        }
+        for (x, shown) in row.iter_mut().enumerate() {
+            let mut toned = tone_color(exposed(layers.radiance[y * width + x]), curve);
+            // Elsewhere no neighbor is brighter than white, and nothing is taken.
+            if near[x.saturating_sub(1)..(x + 2).min(width)].contains(&true) {
+                let at = IVec2::new(x as i32, y as i32);
+                toned = tone_edges(layers, tone.exposure, curve, at, toned);
+            }
+            *shown = toned.to_array().map(|v| encoded.of(v));
+        }
+    };
+    let mut picture = vec![[0; 3]; width * height];
+    picture.par_chunks_mut(width.max(1)).enumerate().for_each(row_of);
+    picture
 }
 
 #[cfg(test)]

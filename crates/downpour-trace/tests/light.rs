@@ -6,7 +6,7 @@ use downpour_math::rng::{rng_pcg4d, rng_unit};
 use downpour_render::camera::Viewpoint;
 use downpour_render::light::LightSource;
 use downpour_render::picture::noise_seed;
-use downpour_render::tone::tone_picture;
+use downpour_render::tone::{Tone, ToneLayers, tone_picture};
 use downpour_shaders::render::scene::SCENE_UNLIT;
 use downpour_trace::builder::{MeshPart, SceneBuilder};
 use downpour_trace::data::{RenderFrame, SceneData};
@@ -14,7 +14,7 @@ use downpour_trace::material::MaterialLook;
 use downpour_trace::puddle::{Ground, PuddleLook, PuddleMap, PuddleRows, slope_levels};
 use downpour_trace::scene::SceneView;
 use downpour_trace::sky_light::SkyLight;
-use downpour_weather::ToneCurve;
+use downpour_weather::{ToneCurve, ToneEdges};
 use glam::{Affine3A, DVec3, Vec2, Vec3};
 
 type Outcome = Result<(), Box<dyn std::error::Error>>;
@@ -472,7 +472,9 @@ fn a_red_lamps_mirror_image_stays_red() -> Outcome {
     assert!(r > 5.0 * g && g > b, "the image is red: {brightest:?}");
     for (stops, factor) in [1.0, 2.0, 4.0, 8.0].into_iter().enumerate() {
         let exposure = factor / r;
-        let shown = tone_picture(&[[r, g, b]], exposure, ToneCurve::Hue)[0].map(f64::from);
+        let layers = ToneLayers { size: [1, 1], radiance: &[[r, g, b]], glow: &[] };
+        let tone = Tone { exposure, curve: ToneCurve::Hue, edges: ToneEdges::ToneAware };
+        let shown = tone_picture(&layers, &tone)[0].map(f64::from);
         println!("{stops} stops over: {shown:?}");
         let [red, green, blue] = shown;
         // Red with little orange, as the light is.

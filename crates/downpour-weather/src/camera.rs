@@ -48,6 +48,18 @@ pub enum ToneCurve {
     KhronosNeutral,
 }
 
+/// Filter of the edges of things brighter than white in pictures to look at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum ToneEdges {
+    /// Both sides of an edge are mixed behind the tone curve, by the coverage of the pixel.
+    #[default]
+    ToneAware,
+    /// The linear mean of both sides goes through the tone curve, and clips.
+    Linear,
+}
+
 /// A camera, or an eye instead.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
@@ -63,6 +75,8 @@ pub struct Camera {
     pub exposure_ev: f64,
     /// Tone curve of pictures to look at.
     pub tone: ToneCurve,
+    /// Filter of the edges of things brighter than white in pictures to look at.
+    pub edges: ToneEdges,
     /// Observer of the moving drops.
     pub observer: Observer,
     /// Time in which light is collected, in seconds: opening time of a camera's shutter, 0 to 1 (0 freezes the drops), or
@@ -179,6 +193,7 @@ impl Default for Camera {
             far: None,
             exposure_ev: 0.0,
             tone: ToneCurve::Hue,
+            edges: ToneEdges::ToneAware,
             observer: Observer::Camera,
             shutter: 1.0 / 60.0,
             aperture: 0.0,
@@ -200,6 +215,7 @@ pub(super) struct CameraTable {
     far_m: Option<In<DepthM>>,
     exposure_ev: Option<NumberKeys<Stops>>,
     tone: Option<ToneCurve>,
+    edges: Option<ToneEdges>,
     observer: Option<Observer>,
     shutter_s: Option<In<ShutterS>>,
     persistence_s: Option<In<PersistenceS>>,
@@ -244,6 +260,7 @@ impl Camera {
             far,
             exposure_ev: default.exposure_ev,
             tone: table.tone.unwrap_or_default(),
+            edges: table.edges.unwrap_or_default(),
             observer,
             shutter: table.shutter(observer, positions)?,
             aperture: table.aperture_mm.map_or(default.aperture, |pupil| pupil.0 * 1.0e-3),

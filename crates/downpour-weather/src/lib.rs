@@ -55,7 +55,7 @@ use downpour_wind::Wind;
 use std::path::Path;
 
 pub use camera::{
-    Camera, CameraPath, CameraPose, FAR_M, FOV_RAD, NEAR_M, Observer, PERSISTENCE_S, ToneCurve,
+    Camera, CameraPath, CameraPose, FAR_M, FOV_RAD, NEAR_M, Observer, PERSISTENCE_S, ToneCurve, ToneEdges,
 };
 pub use downpour_scene::uri::RelativePath;
 pub use drips::{DripPoint, Drips};

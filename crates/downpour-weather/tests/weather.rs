@@ -10,7 +10,7 @@ use downpour_drop::fall_speed::FallSpeedModel;
 use downpour_scene::{Budget, SceneError};
 use downpour_weather::{
     Camera, CameraPose, Glow, GlowFilter, Lamp, Observer, Rain, RainBounce, RainCylinder, RainDrag,
-    RainDropLight, RainVolume, Repeat, Sky, SkySource, SunSource, ToneCurve, Weather,
+    RainDropLight, RainVolume, Repeat, Sky, SkySource, SunSource, ToneCurve, ToneEdges, Weather,
 };
 use effort::measured;
 use exit_code::ExitCode as _;
@@ -80,6 +80,7 @@ near_m = 0.1
 far_m = 500
 exposure_ev = -2
 tone = "khronos-neutral"
+edges = "linear"
 shutter_s = 0.01
 
 [glow]
@@ -224,10 +225,11 @@ fn an_empty_file_is_the_default() {
     assert_eq!(Sky::default().source, SkySource::Overcast([0.9, 0.95, 1.0]));
     assert_eq!((Camera::default().path, Camera::default().shutter), (None, 1.0 / 60.0));
     assert_eq!(Camera::default().observer, Observer::Camera);
-    assert_eq!(Camera::default().tone, ToneCurve::Hue);
+    assert_eq!((Camera::default().tone, Camera::default().edges), (ToneCurve::Hue, ToneEdges::ToneAware));
     let kawase = Glow { glare: 0.1, width: 2.0, filter: GlowFilter::Kawase, has_diffraction: false };
     assert_eq!((default.glow.glare, parse(ALL).unwrap().glow), (0.01, kawase));
-    assert_eq!(parse(ALL).unwrap().camera.tone, ToneCurve::KhronosNeutral);
+    let all = parse(ALL).unwrap().camera;
+    assert_eq!((all.tone, all.edges), (ToneCurve::KhronosNeutral, ToneEdges::Linear));
     let eye = |more: &str| parse(&format!("[camera]\nobserver = 'eye'\n{more}")).unwrap().camera;
     assert_eq!((eye("").observer, eye("").shutter), (Observer::Eye, 0.075));
     assert_eq!(eye("persistence_s = 0.09").shutter, 0.09);
@@ -497,6 +499,7 @@ fn t11_keys_are_known_and_stand_once() {
     refused("[glow]\nfilter = \"box\"", 2, "glow.filter");
     refused("[glow]\nbloom = 1", 2, "glow.bloom");
     refused("[camera]\ntone = \"channel\"", 2, "camera.tone");
+    refused("[camera]\nedges = \"sharp\"", 2, "camera.edges");
     refused("[camera]\naperture_mm = nan", 2, "camera.aperture_mm");
     refused("[camera]\nfocus_m = 0", 2, "0.01 to 1e7 m");
     refused("[streaks]\nsamples = 0", 2, "streaks.samples");

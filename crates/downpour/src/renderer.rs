@@ -330,6 +330,7 @@ impl Renderer {
             measured_rate_mm_h,
             exposure: exposure * self.weather.exposure_factor(time_s),
             tone: self.weather.camera.tone,
+            edges: self.weather.camera.edges,
             truth,
         })
     }

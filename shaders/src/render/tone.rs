@@ -21,6 +21,22 @@ shared_constants! {
         TONE_HALF_WHITE_STOPS: f32 = 6.0;
         /// Largest channel; radiance beyond it is white in any case.
         TONE_MAX_CHANNEL: f32 = 1.0e12;
+        /// Largest channel of a bright side from which on its edges are filtered: white.
+        TONE_EDGE_WHITE: f32 = 1.0;
+        /// Largest channel of a bright side whose edges are filtered altogether.
+        TONE_EDGE_BRIGHT: f32 = 4.0;
+        /// Largest channel of a pixel that clips altogether.
+        TONE_EDGE_CLIPPED: f32 = 2.0;
+        /// Difference from the dark side, over that side, that is an edge altogether; a quarter of it may be texture.
+        TONE_EDGE_CONTRAST: f32 = 1.0;
+        /// Sum of channels that is added to the dark side where differences are divided by it.
+        TONE_EDGE_FLOOR: f32 = 0.06;
+        /// Coverage that is an edge altogether even if the pixel does not clip; a quarter of it may be texture.
+        TONE_EDGE_COVERAGE: f32 = 0.015625;
+        /// Rise of the dark side over the pixel behind it from which on it is a slope altogether; a quarter of it may be texture.
+        TONE_EDGE_SLOPE: f32 = 2.0;
+        /// Sum of channels that is added to the pixel behind the dark side where that rise is divided by it.
+        TONE_EDGE_SLOPE_FLOOR: f32 = 0.5;
         /// The neutral curve of Khronos.
         TONE_KHRONOS: u32 = 0;
         /// The curve that keeps hues.

@@ -6,7 +6,7 @@ use clap::Args;
 use downpour::drop::DropShape;
 use downpour::drop::oscillation::Amplitudes;
 use downpour::render::file::{write_exr, write_png};
-use downpour::render::tone::{ToneCurve, tone_automatic_exposure, tone_picture};
+use downpour::render::tone::{Tone, ToneCurve, ToneEdges, ToneLayers, tone_automatic_exposure, tone_picture};
 use downpour::scene::Budget;
 use downpour::scene::sky::read_sky;
 use downpour::specimen::{
@@ -143,11 +143,11 @@ impl SpecimenArguments {
             Format::Png => {
                 let pixels: Vec<[f32; 4]> = image.pixels.iter().map(|&[r, g, b]| [r, g, b, 0.0]).collect();
                 let exposure = tone_automatic_exposure(&pixels);
-                write_png(
-                    image.width,
-                    image.height,
-                    &tone_picture(&image.pixels, exposure, ToneCurve::default()),
-                )?
+                let size = [image.width, image.height];
+                let layers = ToneLayers { size, radiance: &image.pixels, glow: &[] };
+                let (curve, edges) = (ToneCurve::default(), ToneEdges::default());
+                let shown = tone_picture(&layers, &Tone { exposure, curve, edges });
+                write_png(image.width, image.height, &shown)?
             }
         };
         file.publish(&bytes, interrupt)?;

@@ -3,7 +3,7 @@
 use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
 use downpour_shaders::render::tone::TONE_KERNEL;
 
-use crate::tone::{ToneCurve, ToneFrame, tone_number};
+use crate::tone::{Tone, ToneEdges, ToneFrame, tone_number};
 
 /// Pipeline of pictures to look at.
 #[derive(Clone, Debug)]
@@ -42,7 +42,7 @@ impl TonePipeline {
         Ok(Self { kernel: ComputeKernel::new(gpu, &TONE_KERNEL, &[])? })
     }
 
-    /// Makes ready to make the picture of some layers, with the factor from radiance to display and a curve.
+    /// Makes ready to make the picture of some layers.
     ///
     /// # Errors
     /// [`GpuError::OverLimit`] if the picture is larger than the device takes, or what else the GPU says.
@@ -50,13 +50,13 @@ impl TonePipeline {
         &self,
         buffers: &impl BufferSource,
         layers: TonedLayers<'_>,
-        exposure: f32,
-        curve: ToneCurve,
+        tone: &Tone,
     ) -> Result<TonePass<'_>, GpuError> {
         let [width, height] = layers.size;
         let has_glow = u32::from(layers.glow.is_some());
-        let frame =
-            ToneFrame { width, height, curve: tone_number(curve), exposure, has_glow, ..Default::default() };
+        let has_edges = u32::from(tone.edges == ToneEdges::ToneAware);
+        let (curve, exposure) = (tone_number(tone.curve), tone.exposure);
+        let frame = ToneFrame { width, height, curve, exposure, has_glow, has_edges, ..Default::default() };
         let frame = buffers.uniform("tone", &frame)?;
         let bytes = u64::from(width) * u64::from(height) * 4;
         let target = buffers.buffer("display picture", bytes, wgpu::BufferUsages::STORAGE)?;

@@ -21,7 +21,7 @@ use downpour_render::gpu::{
 };
 use downpour_render::picture::{DeviceUse, Picture, PictureOptions};
 use downpour_render::rain::{DropMasks, Rain};
-use downpour_render::tone::ToneCurve;
+use downpour_render::tone::Tone;
 
 use super::falling::{FallingPass, FoundDrops, FoundReadback, PictureDrops};
 use super::scene::{SceneOnGpu, ScenePipeline};
@@ -101,8 +101,8 @@ pub struct PictureUse {
     /// Frames of rays over which the plate of a scene that stands still is refined from picture to picture ([`KeptPlate`]); 0: each
     /// picture has one of its own.
     pub kept_frames: u32,
-    /// Exposure and curve of a picture that is only displayed: [`PictureOnGpu::begin_display`].
-    pub tone: Option<(f32, ToneCurve)>,
+    /// Way to the pixels of a picture that is only displayed: [`PictureOnGpu::begin_display`].
+    pub tone: Option<Tone>,
 }
 
 /// Buffers of a plate that stays.
@@ -301,11 +301,11 @@ impl PictureRenderer {
             passes.run("glow", &glow.dispatches())?;
         }
         let glow = glow.map(|pass| pass.target().clone());
-        let pixels = match of.tone {
-            Some((exposure, curve)) => {
+        let pixels = match &of.tone {
+            Some(tone) => {
                 let seen =
                     TonedLayers { size: camera.size(), plate: &clean, rain: &layer, glow: glow.as_ref() };
-                let toned = self.tone.prepare(pool, seen, exposure, curve)?;
+                let toned = self.tone.prepare(pool, seen, tone)?;
                 passes.run("tone", &[toned.dispatch()])?;
                 Some(toned.target().clone())
             }

@@ -5,6 +5,8 @@ use std::time::Instant;
 
 use downpour_render::picture::DeviceUse;
 #[cfg(feature = "wgpu")]
+use downpour_render::tone::Tone;
+#[cfg(feature = "wgpu")]
 use downpour_trace::gpu::{DisplayReadback, PictureUse};
 
 use super::frame::PendingFrame;
@@ -91,10 +93,9 @@ impl Renderer {
         let medium = self.shower.medium(&frame_scene, drops.resolved(), &self.masks, time_s)?;
         let options = self.picture_options(&frame_scene, time_s, medium);
         let exposure = exposure * self.weather.exposure_factor(time_s);
-        let of = PictureUse {
-            kept_frames: self.options.kept_frames,
-            tone: Some((exposure, self.weather.camera.tone)),
-        };
+        let (curve, edges) = (self.weather.camera.tone, self.weather.camera.edges);
+        let tone = Some(Tone { exposure, curve, edges });
+        let of = PictureUse { kept_frames: self.options.kept_frames, tone };
         let read = self.drawer.display(of, &frame_scene, &drops, &self.masks, &options)?;
         self.drawn += 1;
         let begin_ms = begin.elapsed().as_secs_f64() * 1.0e3;

@@ -7,7 +7,7 @@ use crate::output_file::replace_file;
 use downpour_render::file::{glow_channels, layer_channels, write_exr, write_exr_channels, write_png};
 use downpour_render::picture::Picture;
 use downpour_render::rain::RainMedium;
-use downpour_render::tone::{ToneCurve, tone_picture};
+use downpour_render::tone::{Tone, ToneCurve, ToneEdges, ToneLayers, tone_picture};
 use downpour_sim::field::VisibleDrops;
 
 use super::RendererError;
@@ -33,6 +33,8 @@ pub struct Frame {
     pub exposure: f32,
     /// Tone curve of [`Frame::pixels`].
     pub tone: ToneCurve,
+    /// Filter of the edges of things brighter than white in [`Frame::pixels`].
+    pub edges: ToneEdges,
     /// Truth about its pixels, where it was asked for.
     pub truth: Option<Truth>,
     /// Triangles of the scene, all copies counted.
@@ -58,6 +60,7 @@ pub struct PendingFrame {
     pub(super) measured_rate_mm_h: Option<f64>,
     pub(super) exposure: f32,
     pub(super) tone: ToneCurve,
+    pub(super) edges: ToneEdges,
     pub(super) truth: Option<Box<TruthOf>>,
 }
 
@@ -84,6 +87,7 @@ impl PendingFrame {
             measured_rate_mm_h: self.measured_rate_mm_h,
             exposure: self.exposure,
             tone: self.tone,
+            edges: self.edges,
             triangles: self.triangles,
             begin_ms: self.begin_ms,
             frame_ms: self.begin.elapsed().as_secs_f64() * 1.0e3,
@@ -107,7 +111,10 @@ impl Frame {
     /// The picture to look at, sRGB, rows from the top.
     #[must_use]
     pub fn pixels(&self) -> Vec<[u8; 3]> {
-        tone_picture(&self.radiance(), self.exposure, self.tone)
+        let radiance = self.radiance();
+        let layers = ToneLayers { size: self.size(), radiance: &radiance, glow: &self.picture.glow };
+        let tone = Tone { exposure: self.exposure, curve: self.tone, edges: self.edges };
+        tone_picture(&layers, &tone)
     }
 
     /// The bytes of a PNG of [`Frame::pixels`].
