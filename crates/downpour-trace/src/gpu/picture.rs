@@ -199,19 +199,26 @@ impl PictureRenderer {
             check_turns(&frame)?;
         }
         let mut passes = FramePasses::new(&self.gpu, MAX_PASSES)?;
-        let uploaded = passes.host("upload", || {
-            let mut last = self.uploaded.lock().unwrap_or_else(PoisonError::into_inner);
-            // What the scene shares with that of the last picture is on the device, and so are its masks.
-            let scene = self.scene.upload_after(scene, last.as_ref().map(|(scene, _)| scene))?;
-            let masks = self.rain.upload_after(masks, last.as_ref().map(|(_, masks)| masks))?;
-            *last = Some((scene.clone(), masks.clone()));
-            drop(last);
-            Ok::<_, GpuError>((scene, masks))
-        })?;
         let _drawing = self.drawing.lock().unwrap_or_else(PoisonError::into_inner);
         let pool = &*self.pool;
         pool.begin_frame();
         let made_before = pool.made();
+        let uploaded = passes.host("upload", || {
+            let mut last = self.uploaded.lock().unwrap_or_else(PoisonError::into_inner);
+            // What the scene shares with that of the last picture is on the device, and so are its masks. After an error nothing is.
+            let (scene, masks) = match last.take() {
+                Some((before, of_masks)) => {
+                    (before.renewed(pool, scene)?, self.rain.upload_after(masks, Some(&of_masks))?)
+                }
+                None => (SceneOnGpu::first(pool, scene)?, self.rain.upload_after(masks, None)?),
+            };
+            *last = Some((scene.clone(), masks.clone()));
+            drop(last);
+            Ok::<_, GpuError>((scene, masks))
+        })?;
+        if let Some(ripples) = uploaded.0.ripples(pool)? {
+            passes.run("ripples", &ripples.dispatches())?;
+        }
         let pace = *self.pace.lock().unwrap_or_else(PoisonError::into_inner);
         let eye = viewpoint.eye.as_dvec3();
         let camera = frame.camera;

@@ -90,7 +90,8 @@ impl RendererError {
         match self {
             Self::Gpu(error)
             | Self::Picture(GpuPictureError::Gpu(error))
-            | Self::Pane(PaneError::Gpu(error)) => Some(error),
+            | Self::Pane(PaneError::Gpu(error))
+            | Self::Puddle(PuddleError::Gpu(error)) => Some(error),
             _ => None,
         }
     }
