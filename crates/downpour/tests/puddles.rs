@@ -12,10 +12,10 @@ use downpour::gpu::{Gpu, LimitSet, wgpu};
 use downpour::scene::Budget;
 use downpour::{Device, Frame, Renderer, RendererOptions, Source};
 
-/// A hollow in a floor, under water and rain that begins at time 0: few steps of ripples.
+/// A hollow in a floor, under water and a short rain that begins at time 0: few steps of ripples.
 const WEATHER: &str = "
 [rain]
-rate_mm_h = [[0, 0], [0.01, 60]]
+rate_mm_h = [[0, 0], [0.01, 60], [0.2, 60], [0.21, 0]]
 bounce = { fraction = 0 }
 seed = 7
 [sky]
@@ -107,6 +107,11 @@ fn ripples_on_a_device_are_those_of_the_cpu() {
         assert!(bytes < 64 << 10, "{bytes} bytes");
         assert!(shown.passes.iter().any(|(name, _)| *name == "ripples"), "{:?}", shown.passes);
     }
+    // Long after the rain the water is level.
+    let (on_cpu, there) = (cpu.frame(20.0).unwrap(), forward.frame(20.0).unwrap());
+    let found = apart(&on_cpu, &there);
+    assert!(found < 0.05 * moved, "{found}, and {moved} between the times");
+    assert!(there.picture.passes.iter().all(|(name, _)| *name != "ripples"));
 }
 
 /// A plate that stays is made anew when the water has moved, and refined while it has not.
