@@ -132,10 +132,7 @@ fn with_room(gpu: &Gpu, bytes: u64) -> Gpu {
     let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
     let name = &gpu.adapter().name;
     let adapter = adapters.into_iter().find(|adapter| adapter.get_info().name == *name).unwrap();
-    let required_limits = wgpu::Limits {
-        max_storage_buffer_binding_size: bytes.try_into().unwrap(),
-        ..wgpu::Limits::default()
-    };
+    let required_limits = wgpu::Limits { max_storage_buffer_binding_size: bytes, ..wgpu::Limits::default() };
     let descriptor = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
     let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).unwrap();
     Gpu::on_device(device, queue).with_timeout(Duration::from_secs(600))

@@ -274,6 +274,7 @@ impl Drawer {
 
     /// The puddles of a weather that are to be seen at a refraction of drops: the GPU holds their ripples, where that is faster and has room
     /// for them.
+    #[cfg_attr(not(feature = "wgpu"), expect(unused_variables, reason = "the CPU holds all ripples"))]
     pub(super) fn ground(
         &self,
         weather: &Weather,
@@ -283,24 +284,20 @@ impl Drawer {
         refraction: RefractionForm,
     ) -> Result<Option<WetGround>, RendererError> {
         let ground = WetGround::new(weather, loaded, first, first_s)?;
-        #[cfg(feature = "wgpu")]
-        {
-            // A pane before the papers' captures has an environment map that the CPU traces.
-            let is_seen_by_cpu = weather.glass.is_some() && refraction != RefractionForm::Direction;
-            if let Some(on_gpu) = self.on_gpu.as_ref().filter(|on| on.holds_ripples() && !is_seen_by_cpu)
-                && let Some(mut ground) = ground
-            {
-                match on_gpu.hold_ripples(&mut ground) {
-                    Err(error) if !error.is_too_much_for_gpu() => return Err(error),
-                    _ => return Ok(Some(ground)),
+        // A pane before the papers' captures has an environment map that the CPU traces.
+        let is_seen_by_cpu = weather.glass.is_some() && refraction != RefractionForm::Direction;
+        match ground {
+            #[cfg(feature = "wgpu")]
+            Some(mut ground) if !is_seen_by_cpu => {
+                if let Some(on_gpu) = self.on_gpu.as_ref().filter(|on| on.holds_ripples())
+                    && let Err(error) = on_gpu.hold_ripples(&mut ground)
+                    && !error.is_too_much_for_gpu()
+                {
+                    return Err(error);
                 }
+                Ok(Some(ground))
             }
-            return Ok(ground);
-        }
-        #[cfg(not(feature = "wgpu"))]
-        {
-            let _ = refraction;
-            Ok(ground)
+            ground => Ok(ground),
         }
     }
 
