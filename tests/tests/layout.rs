@@ -151,7 +151,7 @@ fn hosts() -> Vec<Host> {
         host!(GlassPictureLight as "GlassPictureLight" in &render::glass::LIGHT, position, radius, color, distance),
         host!(PuddleGrid as "PuddleGrid" in &lattice::puddle::PUDDLE,
             size, quads, degree, coefficients, weights, dt, twice, kick, viscosity, keep, sponge_cells, sponge_drag,
-            steps, halo, half_storage, slope),
+            steps, halo, half_storage, slope, first_texel),
         host!(PuddleSeed as "PuddleSeed" in &lattice::puddle::PUDDLE_SEED,
             center, per_length, amplitude, lift, reach, shape, unused),
         host!(BvhNode as "BvhNode" in &bvh::BVH, low, link, high, count),

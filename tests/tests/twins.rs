@@ -15,6 +15,7 @@ const ELSEWHERE: [(&[&str], &str); 12] = [
     (
         &[
             "puddle_is_finite",
+            "puddle_normal_found",
             "puddle_normal_quad",
             "puddle_normal_row",
             "puddle_state_load",

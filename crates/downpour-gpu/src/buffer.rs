@@ -68,14 +68,19 @@ impl Gpu {
 
     /// Writes `bytes` at the start of `buffer`, padded with zeros to a multiple of 4.
     pub(crate) fn write(&self, buffer: &wgpu::Buffer, bytes: &[u8]) {
+        self.write_at(buffer, 0, bytes);
+    }
+
+    /// The same from byte `offset` on, a multiple of 4.
+    pub(crate) fn write_at(&self, buffer: &wgpu::Buffer, offset: u64, bytes: &[u8]) {
         let whole = bytes.len() / 4 * 4;
         if whole > 0 {
-            self.queue().write_buffer(buffer, 0, &bytes[..whole]);
+            self.queue().write_buffer(buffer, offset, &bytes[..whole]);
         }
         if whole < bytes.len() {
             let mut last = [0; 4];
             last[..bytes.len() - whole].copy_from_slice(&bytes[whole..]);
-            self.queue().write_buffer(buffer, whole as u64, &last);
+            self.queue().write_buffer(buffer, offset + whole as u64, &last);
         }
     }
 }

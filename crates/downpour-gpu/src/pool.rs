@@ -52,8 +52,16 @@ pub trait BufferSource {
 
     /// Writes the beginning of a buffer, before whatever is submitted next.
     fn write(&self, buffer: &wgpu::Buffer, bytes: &[u8]) {
-        self.gpu().write(buffer, bytes);
+        self.write_at(buffer, 0, bytes);
     }
+
+    /// Writes part of a buffer from byte `offset` on, a multiple of 4, before whatever is submitted next.
+    fn write_at(&self, buffer: &wgpu::Buffer, offset: u64, bytes: &[u8]) {
+        self.gpu().write_at(buffer, offset, bytes);
+    }
+
+    /// Counts bytes that other work has written for this frame.
+    fn note_written(&self, _bytes: u64) {}
 
     /// Returns a storage buffer that begins with `data`; it has room for one element at least, as a binding needs it.
     ///
@@ -238,9 +246,13 @@ impl BufferSource for BufferPool {
         Ok(made)
     }
 
-    fn write(&self, buffer: &wgpu::Buffer, bytes: &[u8]) {
-        self.kept.lock().unwrap_or_else(PoisonError::into_inner).written += bytes.len() as u64;
-        self.gpu.write(buffer, bytes);
+    fn write_at(&self, buffer: &wgpu::Buffer, offset: u64, bytes: &[u8]) {
+        self.note_written(bytes.len() as u64);
+        self.gpu.write_at(buffer, offset, bytes);
+    }
+
+    fn note_written(&self, bytes: u64) {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner).written += bytes;
     }
 
     fn gpu(&self) -> &Gpu {

@@ -31,7 +31,7 @@ mod symbol;
 
 pub use dispersion::{PuddleForm, PuddleWater, phase_speed};
 pub use model::{MAX_SUBSTEPS, PuddleBorder, PuddleDamping, PuddleOptions, SIZE_RANGE};
-pub use normal::{puddle_normal_lean, puddle_normal_slopes};
+pub use normal::{puddle_normal_lean, puddle_normal_slopes, puddle_normal_texel, slope_levels};
 pub use rain::PuddleRain;
 pub use seed::{Impact, PuddleSeed, Wake, puddle_seed_height, puddle_seed_shape};
 pub use storage::PuddleStorage;
@@ -246,6 +246,12 @@ impl Puddle {
     #[must_use]
     pub fn normals(&self) -> Vec<[f32; 3]> {
         normal::normals(&self.model.links, &self.heights(), (1.0 / (8.0 * self.model.cell())) as f32)
+    }
+
+    /// Slopes along the rows and the columns of each cell, the square of the slope, and 0, row by row: those of the normals.
+    #[must_use]
+    pub fn slopes(&self) -> Vec<[f32; 4]> {
+        normal::texels(&self.model.links, &self.heights(), (1.0 / (8.0 * self.model.cell())) as f32)
     }
 
     /// Energy that leapfrog conserves without damping: `Sum (v^2 + eta A eta') / 2` per cell area, m^4/s^2, with the

@@ -204,6 +204,8 @@ impl SceneBuilder {
             sky: Arc::new(sky.texels.clone()),
             sky_levels: sky.levels,
             sky_irradiance: sky.irradiance,
+            #[cfg(feature = "wgpu")]
+            ripples: None,
         };
         for (lamp, parts) in glass {
             let parts: Vec<_> = parts.iter().map(|&triangle| mean_emission(&data, triangle)).collect();

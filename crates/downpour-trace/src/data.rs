@@ -113,6 +113,9 @@ pub struct SceneData {
     pub sky_levels: [[u32; 4]; SCENE_SKY_LEVELS as usize],
     /// Irradiance of the sky over pi.
     pub sky_irradiance: [[f32; 4]; 9],
+    /// Ripples that a device holds: the table shows level water in their place.
+    #[cfg(feature = "wgpu")]
+    pub ripples: Option<crate::gpu::RipplesOnGpu>,
 }
 
 impl SceneData {
@@ -145,6 +148,10 @@ impl SceneData {
         }
         self.light_count = kept + lights.len() as u32;
         (self.puddles, self.puddle_count, self.pane, self.wetness) = (0, 0, 0, 0);
+        #[cfg(feature = "wgpu")]
+        {
+            self.ripples = None;
+        }
     }
 
     /// Replaces light `index` by another of the same kind; the glass of a lamp keeps its radius.

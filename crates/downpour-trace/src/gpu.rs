@@ -3,6 +3,7 @@
 mod falling;
 mod picture;
 mod plate;
+mod ripples;
 mod scene;
 
 pub use falling::{FieldDrops, FoundDrops, PictureDrops};
@@ -11,6 +12,7 @@ pub use picture::{
     PictureUse,
 };
 pub use plate::ScenePlate;
+pub use ripples::RipplesOnGpu;
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 pub use scene::SampleDispatches;

@@ -79,14 +79,18 @@ fn seedless(frame: &RenderFrame) -> RenderFrame {
     RenderFrame { camera: Camera { seed: 0, ..frame.camera }, ..*frame }
 }
 
-/// True if two scenes show the same: what they share is the same memory, and their tables are equal but for a wetness that nobody can
-/// tell.
+/// True if two scenes show the same: what they share is the same memory, ripples on a device are of one step, and their tables are equal
+/// but for a wetness that nobody can tell.
 fn shows_alike(before: &SceneData, scene: &SceneData) -> bool {
     let shares = Arc::ptr_eq(&before.nodes, &scene.nodes)
         && Arc::ptr_eq(&before.triangles, &scene.triangles)
         && Arc::ptr_eq(&before.corners, &scene.corners)
         && Arc::ptr_eq(&before.texels, &scene.texels)
         && Arc::ptr_eq(&before.sky, &scene.sky);
+    #[cfg(feature = "wgpu")]
+    if before.ripples != scene.ripples {
+        return false;
+    }
     let rows = |scene: &SceneData| {
         let wet = scene.wetness as usize;
         let skipped = if wet > 0 { wet..wet + WET_ROWS_THAT_CHANGE } else { 0..0 };

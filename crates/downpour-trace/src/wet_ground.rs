@@ -114,7 +114,27 @@ impl WetGround {
         self.ripples.advance(time_s)
     }
 
-    /// Sets the puddles of a frame to the present state of the water.
+    /// Holds and steps the ripples on a device from now on, beginning with level water: to be called before the first
+    /// [`WetGround::advance`]. After an error they stay where they are.
+    ///
+    /// # Errors
+    /// [`PuddleError::Gpu`]: what the device says.
+    #[cfg(feature = "wgpu")]
+    pub fn move_to_device(
+        &mut self,
+        kernels: &downpour_lattice::gpu::puddle::PuddleKernels,
+    ) -> Result<(), PuddleError> {
+        self.ripples.move_to_device(kernels)
+    }
+
+    /// True if a device holds the ripples: then the CPU sees level water in frames.
+    #[must_use]
+    pub fn is_on_device(&self) -> bool {
+        self.ripples.is_on_device()
+    }
+
+    /// Sets the puddles of a frame to the present state of the water. Ripples on a device are those that the device has when it draws the
+    /// frame, which has to be before the next [`WetGround::advance`].
     pub fn lay(&self, frame_scene: &mut FrameScene) {
         frame_scene.data.set_puddles(&PuddleRows {
             puddles: &self.puddles,
@@ -122,6 +142,10 @@ impl WetGround {
             slopes: &self.ripples.slopes(),
             shift: (self.origin - frame_scene.origin).as_vec3(),
         });
+        #[cfg(feature = "wgpu")]
+        {
+            frame_scene.data.ripples = self.ripples.on_device();
+        }
     }
 
     /// Maps of the water of each puddle.

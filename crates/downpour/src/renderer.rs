@@ -124,6 +124,11 @@ struct Water {
 }
 
 impl Water {
+    /// True if the CPU does not see the ripples on the ground.
+    fn is_on_device(&self) -> bool {
+        self.ground.as_ref().is_some_and(WetGround::is_on_device)
+    }
+
     /// Puts the water on the ground of a frame, and what the pane does to light that falls through it.
     fn lay(&self, frame_scene: &mut FrameScene) -> Result<(), RendererError> {
         if let Some(ground) = &self.ground {
@@ -287,7 +292,13 @@ impl Renderer {
         told: &mut dyn FnMut(Progress),
     ) -> Result<PendingFrame, RendererError> {
         let begin = Instant::now();
-        let frame_scene = self.wet(time_s, told)?;
+        let mut frame_scene = match self.wet(time_s, told) {
+            Err(error) if self.drawn == 0 && self.drawer.falls_back(&error) => {
+                self.water = None;
+                self.wet(time_s, told)?
+            }
+            wet => wet?,
+        };
         let mut drops = self.drops(&frame_scene, time_s, told)?;
         let measured = || self.shower.measured_rate_mm_h(&frame_scene, time_s);
         let measured_rate_mm_h = self.options.measure.then(measured).transpose()?;
@@ -299,6 +310,10 @@ impl Renderer {
         let options = self.picture_options(&frame_scene, time_s, medium);
         let picture = match self.draw(&frame_scene, &drops, &options, kept_frames, waits) {
             Err(error) if self.drawn == 0 && self.drawer.falls_back(&error) => {
+                if self.water.as_ref().is_some_and(Water::is_on_device) {
+                    self.water = None;
+                    frame_scene = self.wet(time_s, told)?;
+                }
                 drops = self.drops(&frame_scene, time_s, told)?;
                 medium = self.shower.medium(&frame_scene, drops.resolved(), &self.masks, time_s)?;
                 let options = self.picture_options(&frame_scene, time_s, medium);
@@ -377,7 +392,13 @@ impl Renderer {
                         &widest(&self.first.viewpoint, &self.weather),
                         first_s,
                     )?,
-                    ground: WetGround::new(&self.weather, &self.loaded, &self.first, first_s)?,
+                    ground: self.drawer.ground(
+                        &self.weather,
+                        &self.loaded,
+                        &self.first,
+                        first_s,
+                        self.refraction(),
+                    )?,
                     time_s,
                 }
             }

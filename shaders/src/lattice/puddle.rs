@@ -8,7 +8,7 @@ pub const MODULES: &[&Module] =
     &[&PUDDLE_CONSTANTS, &PUDDLE, &PUDDLE_STATE, &PUDDLE_STEP, &PUDDLE_SEED, &PUDDLE_NORMAL];
 
 /// Every kernel of this file.
-pub const KERNELS: &[&Kernel] = &[&STEP_KERNEL, &DIRECT_KERNEL, &SEED_KERNEL, &NORMAL_KERNEL];
+pub const KERNELS: &[&Kernel] = &[&STEP_KERNEL, &DIRECT_KERNEL, &SEED_KERNEL, &NORMAL_KERNEL, &SLOPES_KERNEL];
 
 shared_constants! {
     /// Links between cells, limits and shapes.
@@ -100,3 +100,7 @@ pub static SEED_KERNEL: Kernel =
 /// One invocation per quad.
 pub static NORMAL_KERNEL: Kernel =
     Kernel { entry: "main_puddle_normal", module: &PUDDLE_NORMAL, workgroup: [16, 16, 1] };
+
+/// One invocation per quad.
+pub static SLOPES_KERNEL: Kernel =
+    Kernel { entry: "main_puddle_normal_slopes", module: &PUDDLE_NORMAL, workgroup: [16, 16, 1] };

@@ -32,6 +32,8 @@ struct PuddleGrid {
     half_storage: u32,
     // Inverse of eight cells, 1/m.
     slope: f32,
+    // First texel of the slopes that main_puddle_normal_slopes writes.
+    first_texel: u32,
 }
 
 // Values of the neighbors, or of the cells themselves where the link is missing. A byte of `links` per cell.

@@ -8,16 +8,20 @@ use downpour_lattice::puddle::lattice::{
 };
 use downpour_lattice::puddle::{
     Impact, Puddle, PuddleBorder, PuddleForm, PuddleOptions, PuddleSeed, PuddleStorage, Wake,
-    puddle_normal_lean, puddle_normal_slopes, puddle_seed_height, puddle_seed_shape,
+    puddle_normal_lean, puddle_normal_slopes, puddle_normal_texel, puddle_seed_height, puddle_seed_shape,
+    slope_levels,
 };
+use downpour_math::pyramid::pyramid_append;
 use downpour_math::rng::{rng_draw, rng_unit};
+use downpour_shaders::Kernel;
+use downpour_shaders::common::PYRAMID_KERNEL;
 use downpour_shaders::lattice::puddle::{
     DIRECT_KERNEL, NORMAL_KERNEL, PUDDLE, PUDDLE_MIN, PUDDLE_NORMAL, PUDDLE_SEED, PUDDLE_STATE, PUDDLE_STEP,
-    SEED_KERNEL, STEP_KERNEL,
+    SEED_KERNEL, SLOPES_KERNEL, STEP_KERNEL,
 };
 
 use crate::Domain::{AnyWord, Below, Fixed, Made, OneOf, Uniform};
-use crate::compare::{Cpu, Gpu as FromGpu};
+use crate::compare::{Cpu, Gpu as FromGpu, POISON};
 use crate::function::Run;
 use crate::signature::WordKind;
 use crate::words::{Args, IntoWords as _};
@@ -259,6 +263,25 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             Tol::absolute(1.0e-6, "a square root and a division (2.5 ulp each)"),
             |a| puddle_normal_lean(a.f32s()).words(),
         ),
+        FunctionCase::new(
+            "puddle_normal_texel",
+            &PUDDLE_NORMAL,
+            &[Uniform(-3.0, 3.0), Uniform(-3.0, 3.0)],
+            Tol::relative(
+                4.0e-5,
+                1.0e-7,
+                "what is left of 1 is 0.05 at least, known to 2e-7; its root divides, and the square doubles it",
+            ),
+            |a| puddle_normal_texel(a.f32s()).words(),
+        ),
+        // A surface that stands, whose slope is limited.
+        FunctionCase::new(
+            "puddle_normal_texel",
+            &PUDDLE_NORMAL,
+            &[OneOf(&[0.0, 3.0e4, -3.0e4, 1.0e5]), Fixed(4.0e5)],
+            Tol::relative(2.0e-6, 1.0e-7, "a root, and a division by 0.001"),
+            |a| puddle_normal_texel(a.f32s()).words(),
+        ),
     ]
 }
 
@@ -356,11 +379,44 @@ fn seeds(gpu: &Gpu) -> Result<Run, GpuError> {
 
 fn normals(gpu: &Gpu) -> Result<Run, GpuError> {
     let options = PuddleOptions { size: [150, 131], ..PuddleOptions::default() };
-    let (cpu, mut on_gpu) = pair(gpu, &options)?;
+    let (cpu, on_gpu) = pair(gpu, &options)?;
     let columns =
         |normals: Vec<[f32; 3]>| [0, 1, 2].map(|k| normals.iter().map(|n| n[k]).collect::<Vec<f32>>());
     Ok(run_of(150, &columns(cpu.normals()), &columns(on_gpu.normals().map_err(told)?)))
 }
+
+/// Slopes in levels, behind five texels of something else.
+fn slopes(gpu: &Gpu, options: &PuddleOptions) -> Result<Run, GpuError> {
+    const FIRST: usize = 5;
+    let (cpu, on_gpu) = pair(gpu, options)?;
+    let mut texels = cpu.slopes();
+    for level in slope_levels(options.size) {
+        pyramid_append(&mut texels, &level);
+    }
+    let slopes = on_gpu.slopes();
+    assert_eq!(slopes.texel_count() as usize, texels.len());
+    let poison = vec![[f32::from_bits(POISON); 4]; FIRST + texels.len() + 1];
+    let buffer = gpu.storage_buffer("texels", &poison)?;
+    gpu.submit(&slopes.prepare(gpu, &buffer, FIRST as u32)?.dispatches())?;
+    let made = gpu.read::<[f32; 4]>(&buffer)?;
+    let words = |texels: &[[f32; 4]]| -> Vec<u32> { texels.iter().flatten().map(|v| v.to_bits()).collect() };
+    let beside = [&made[..FIRST], &made[FIRST + texels.len()..]].concat();
+    assert!(words(&beside).iter().all(|&word| word == POISON), "texels of something else are written");
+    Ok(Run {
+        arguments: (0..texels.len()).map(|i| vec![(i as f32).to_bits()]).collect(),
+        cpu: Cpu(words(&texels)),
+        gpu: FromGpu(words(&made[FIRST..FIRST + texels.len()])),
+        kinds: vec![WordKind::Float; 4],
+    })
+}
+
+static PYRAMID: &[&Kernel] = &[&PYRAMID_KERNEL];
+
+const SLOPES: Tol = Tol::relative(
+    1.0e-4,
+    2.0e-5,
+    "slopes of up to 1.5 from heights of 1e-3 m over 2 mm, each known to 1e-7, by way of a normal; means of them",
+);
 
 const STEPS: Tol = Tol::absolute(
     6.0e-9,
@@ -498,6 +554,27 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             text: None,
             tol: Tol::absolute(6.0e-5, "components in 16 bits, 1.6e-5 each; the third is what is left of 1"),
             run: normals,
+        },
+        KernelCase {
+            name: "main_puddle_normal_slopes: rough water among islands, in levels",
+            kernel: &SLOPES_KERNEL,
+            with: PYRAMID,
+            overrides: &[],
+            text: None,
+            tol: SLOPES,
+            run: |gpu| slopes(gpu, &PuddleOptions { size: [150, 131], ..PuddleOptions::default() }),
+        },
+        KernelCase {
+            name: "main_puddle_normal_slopes: a square in sixteen bits, in levels",
+            kernel: &SLOPES_KERNEL,
+            with: PYRAMID,
+            overrides: &[],
+            text: None,
+            tol: SLOPES,
+            run: |gpu| {
+                let storage = PuddleStorage::Half;
+                slopes(gpu, &PuddleOptions { size: [128, 128], storage, ..PuddleOptions::default() })
+            },
         },
     ]
 }

@@ -1,18 +1,22 @@
 //! Puddle on a GPU: the same numbers as [`Puddle`](crate::puddle::Puddle), with several time steps per dispatch, in
 //! tiles; for the membrane one step per dispatch, without tiles.
 
-use downpour_gpu::{ComputeKernel, Gpu, GpuError, timing::PassTime, wgpu};
+use downpour_gpu::{
+    BufferPool, BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, timing::PassTime, wgpu,
+};
 use downpour_math::ops::ops_is_finite;
 use downpour_math::packing::packing_unpack_snorm;
+use downpour_math::pyramid::PyramidLevel;
+use downpour_shaders::common::PYRAMID_KERNEL;
 use downpour_shaders::lattice::puddle::{
-    DIRECT_KERNEL, NORMAL_KERNEL, PUDDLE_STEP_TILE, SEED_KERNEL, STEP_KERNEL,
+    DIRECT_KERNEL, NORMAL_KERNEL, PUDDLE_STEP_TILE, SEED_KERNEL, SLOPES_KERNEL, STEP_KERNEL,
 };
 
 use crate::error::LatticeError;
 use crate::puddle::lattice::{PuddleGrid, puddle_state_pack, puddle_state_unpack};
 use crate::puddle::{
     Impact, Model, PuddleOptions, PuddleSeed, PuddleStorage, SeedSquares, Wake, craters, footprints,
-    whole_normal,
+    slope_levels, whole_normal,
 };
 
 /// Maximum number of seeds per dispatch: a driver may end an invocation that loops too long.
@@ -30,16 +34,48 @@ pub enum GpuPuddleError {
     Gpu(#[from] GpuError),
 }
 
+/// Kernels of puddles of a device: they serve any number of puddles, one after another.
+#[derive(Clone, Debug)]
+pub struct PuddleKernels {
+    gpu: Gpu,
+    step: ComputeKernel,
+    seed: ComputeKernel,
+    normal: ComputeKernel,
+    slopes: ComputeKernel,
+    pyramid: ComputeKernel,
+}
+
+impl PuddleKernels {
+    /// Creates the kernels.
+    ///
+    /// # Errors
+    /// Returns the error of the GPU.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let kernel = |kernel| ComputeKernel::new(gpu, kernel, &[]);
+        Ok(Self {
+            gpu: gpu.clone(),
+            step: kernel(&STEP_KERNEL)?,
+            seed: kernel(&SEED_KERNEL)?,
+            normal: kernel(&NORMAL_KERNEL)?,
+            slopes: kernel(&SLOPES_KERNEL)?,
+            pyramid: kernel(&PYRAMID_KERNEL)?,
+        })
+    }
+}
+
 /// A puddle on a GPU.
 #[derive(Debug)]
 pub struct GpuPuddle {
     gpu: Gpu,
     model: Model,
-    step: ComputeKernel,
+    /// Grid of the whole lattice, for kernels that do not step.
+    whole: PuddleGrid,
+    kernels: PuddleKernels,
     /// Kernel of a single step: faster than tiles for degree 1.
     direct: Option<ComputeKernel>,
-    seed: ComputeKernel,
-    normal: ComputeKernel,
+    /// Uniforms and seeds. A frame of the pool is one submission.
+    pool: BufferPool,
+    bytes_uploaded: u64,
     links: wgpu::Buffer,
     /// Two copies of the state.
     states: [wgpu::Buffer; 2],
@@ -55,7 +91,15 @@ impl GpuPuddle {
     /// # Errors
     /// [`GpuPuddleError::Lattice`] names the option out of range; else errors of the GPU.
     pub fn new(gpu: &Gpu, options: &PuddleOptions) -> Result<Self, GpuPuddleError> {
-        Self::assemble(gpu, Model::new(options, None)?)
+        Self::with_kernels(&PuddleKernels::new(gpu)?, options)
+    }
+
+    /// The same with kernels that are there already.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_kernels(kernels: &PuddleKernels, options: &PuddleOptions) -> Result<Self, GpuPuddleError> {
+        Self::assemble(kernels, Model::new(options, None)?)
     }
 
     /// Creates level water where `land` is false.
@@ -63,23 +107,23 @@ impl GpuPuddle {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn with_land(gpu: &Gpu, options: &PuddleOptions, land: &[bool]) -> Result<Self, GpuPuddleError> {
-        Self::assemble(gpu, Model::new(options, Some(land))?)
+        Self::assemble(&PuddleKernels::new(gpu)?, Model::new(options, Some(land))?)
     }
 
-    fn assemble(gpu: &Gpu, model: Model) -> Result<Self, GpuPuddleError> {
-        let cells = (model.links.stride() * model.links.size[1]) as u64;
-        let bytes = cells * if model.options.storage == PuddleStorage::Half { 4 } else { 8 };
-        let state = || gpu.empty_buffer("puddle state", bytes, wgpu::BufferUsages::STORAGE);
+    fn assemble(kernels: &PuddleKernels, mut model: Model) -> Result<Self, GpuPuddleError> {
+        let gpu = &kernels.gpu;
+        let whole = model.grid(model.limit(), 1);
+        let state = || level_state(gpu, &model);
         // 16-bit numbers are rounded once per sweep, so the steps per sweep affect the result.
         let plain = model.degree == 1 && model.options.storage == PuddleStorage::Full;
         let direct = plain.then(|| ComputeKernel::new(gpu, &DIRECT_KERNEL, &[]));
         Ok(Self {
             direct: direct.transpose()?,
-            step: ComputeKernel::new(gpu, &STEP_KERNEL, &[])?,
-            seed: ComputeKernel::new(gpu, &SEED_KERNEL, &[])?,
-            normal: ComputeKernel::new(gpu, &NORMAL_KERNEL, &[])?,
+            whole,
+            kernels: kernels.clone(),
+            pool: BufferPool::new(gpu),
+            bytes_uploaded: model.links.bytes.len() as u64,
             links: gpu.storage_buffer("puddle links", &model.links.bytes)?,
-            // New buffers are zero.
             states: [state()?, state()?],
             newer: 0,
             reset: gpu.storage_buffer("puddle resets", &[0u32])?,
@@ -110,17 +154,18 @@ impl GpuPuddle {
         let substeps = self.model.substeps(f64::from(dt_s))?;
         let dt = f64::from(dt_s) / f64::from(substeps);
         let full = if self.direct.is_some() { 1 } else { self.model.steps_per_sweep() };
-        let kernel = self.direct.as_ref().unwrap_or(&self.step);
+        let kernel = self.direct.as_ref().unwrap_or(&self.kernels.step);
         let (whole, rest) = (substeps / full, substeps % full);
         let mut sweeps = vec![full; whole as usize];
         sweeps.extend((rest > 0).then_some(rest));
-        let uniforms = [full, rest.max(1)]
-            .map(|steps| self.gpu.uniform_buffer("puddle grid", &self.model.grid(dt, steps)));
+        self.pool.begin_frame();
+        let uniforms =
+            [full, rest.max(1)].map(|steps| self.pool.uniform("puddle grid", &self.model.grid(dt, steps)));
         let [full_uniform, rest_uniform] = uniforms;
         let (full_uniform, rest_uniform) = (full_uniform?, rest_uniform?);
         let bind = |uniform: &wgpu::Buffer, from: usize| {
             let buffers = [uniform, &self.links, &self.states[from], &self.states[1 - from], &self.reset];
-            kernel.bind(&self.gpu, &buffers)
+            kernel.bind(&self.pool, &buffers)
         };
         // One for each direction between the copies, and one for the remainder.
         let last_from = (self.newer + whole as usize) % 2;
@@ -134,6 +179,7 @@ impl GpuPuddle {
         }
         self.gpu.submit(&dispatches)?;
         drop(dispatches);
+        self.bytes_uploaded += self.pool.written();
         self.newer = from;
         self.steps += u64::from(substeps);
         Ok(substeps)
@@ -162,7 +208,7 @@ impl GpuPuddle {
         let dt = f64::from(dt_s).min(self.model.limit());
         let uniform = self.gpu.uniform_buffer("puddle grid", &self.model.grid(dt, steps))?;
         let direct = self.direct.as_ref().filter(|_| steps == 1);
-        let kernel = direct.unwrap_or(&self.step);
+        let kernel = direct.unwrap_or(&self.kernels.step);
         let bind = |from: usize| {
             let buffers = [&uniform, &self.links, &self.states[from], &self.states[1 - from], &self.reset];
             kernel.bind(&self.gpu, &buffers)
@@ -200,29 +246,47 @@ impl GpuPuddle {
             if squares.entries.is_empty() {
                 continue;
             }
-            let (uniform, groups) = self.whole()?;
-            let list = self.gpu.storage_buffer("puddle seeds", seeds)?;
-            let first = self.gpu.storage_buffer("puddle seeds of squares", &squares.first)?;
-            let entries = self.gpu.storage_buffer("puddle seed entries", &squares.entries)?;
+            self.pool.begin_frame();
+            let uniform = self.pool.uniform("puddle grid", &self.whole)?;
+            let list = self.pool.storage("puddle seeds", seeds)?;
+            let first = self.pool.storage("puddle seeds of squares", &squares.first)?;
+            let entries = self.pool.storage("puddle seed entries", &squares.entries)?;
             let [from, to] = [self.newer, 1 - self.newer];
             let buffers =
                 [&uniform, &self.links, &self.states[from], &list, &first, &entries, &self.states[to]];
-            let bindings = self.seed.bind(&self.gpu, &buffers)?;
-            self.gpu.submit(&[self.seed.dispatch(&bindings, groups)])?;
+            let bindings = self.kernels.seed.bind(&self.pool, &buffers)?;
+            self.gpu.submit(&[self.kernels.seed.dispatch(&bindings, groups_of(&self.whole))])?;
+            self.bytes_uploaded += self.pool.written();
             self.newer = to;
         }
         Ok(())
     }
 
-    /// Grid of the whole lattice for kernels that do not step, and their workgroups.
-    fn whole(&mut self) -> Result<(wgpu::Buffer, [u32; 3]), GpuPuddleError> {
-        let dt = match self.model.fitted() {
-            (_, dt) if dt > 0.0 => dt,
-            _ => self.model.limit(),
-        };
-        let grid: PuddleGrid = self.model.grid(dt, 1);
-        let uniform = self.gpu.uniform_buffer("puddle grid", &grid)?;
-        Ok((uniform, [grid.quads.div_ceil(16), grid.size[1].div_ceil(16), 1]))
+    /// Makes the water level again. Does not wait.
+    ///
+    /// # Errors
+    /// Errors of the GPU; the puddle is then unchanged.
+    pub fn set_level(&mut self) -> Result<(), GpuPuddleError> {
+        self.states[self.newer] = level_state(&self.gpu, &self.model)?;
+        Ok(())
+    }
+
+    /// Slopes of the present state, for kernels that other work submits before the puddle is stepped or seeded again.
+    #[must_use]
+    pub fn slopes(&self) -> PuddleSlopes {
+        PuddleSlopes {
+            slopes: self.kernels.slopes.clone(),
+            pyramid: self.kernels.pyramid.clone(),
+            grid: self.whole,
+            links: self.links.clone(),
+            state: self.states[self.newer].clone(),
+        }
+    }
+
+    /// Number of bytes that were written to the device for steps and seeds so far, and for the links.
+    #[must_use]
+    pub fn bytes_uploaded(&self) -> u64 {
+        self.bytes_uploaded
     }
 
     /// Heights over the level, m, and velocities, m/s, row by row. Waits.
@@ -301,14 +365,14 @@ impl GpuPuddle {
     ///
     /// # Errors
     /// Errors of the GPU.
-    pub fn normals(&mut self) -> Result<Vec<[f32; 3]>, GpuPuddleError> {
-        let (uniform, groups) = self.whole()?;
+    pub fn normals(&self) -> Result<Vec<[f32; 3]>, GpuPuddleError> {
+        let uniform = self.gpu.uniform_buffer("puddle grid", &self.whole)?;
         let stride = self.model.links.stride();
         let bytes = (stride * self.model.links.size[1] * 4) as u64;
         let words = self.gpu.empty_buffer("puddle normals", bytes, wgpu::BufferUsages::STORAGE)?;
         let buffers = [&uniform, &self.links, &self.states[self.newer], &words];
-        let bindings = self.normal.bind(&self.gpu, &buffers)?;
-        self.gpu.submit(&[self.normal.dispatch(&bindings, groups)])?;
+        let bindings = self.kernels.normal.bind(&self.gpu, &buffers)?;
+        self.gpu.submit(&[self.kernels.normal.dispatch(&bindings, groups_of(&self.whole))])?;
         let words: Vec<u32> = self.gpu.read(&words)?;
         let rows = words.chunks_exact(stride);
         let [nx, _] = self.model.links.size;
@@ -335,5 +399,91 @@ impl GpuPuddle {
     #[must_use]
     pub fn state_buffer(&self) -> &wgpu::Buffer {
         &self.states[self.newer]
+    }
+}
+
+/// State of level water: new buffers are zero.
+fn level_state(gpu: &Gpu, model: &Model) -> Result<wgpu::Buffer, GpuError> {
+    let cells = (model.links.stride() * model.links.size[1]) as u64;
+    let bytes = cells * if model.options.storage == PuddleStorage::Half { 4 } else { 8 };
+    gpu.empty_buffer("puddle state", bytes, wgpu::BufferUsages::STORAGE)
+}
+
+/// Workgroups of kernels with an invocation for each quad.
+fn groups_of(grid: &PuddleGrid) -> [u32; 3] {
+    [grid.quads.div_ceil(16), grid.size[1].div_ceil(16), 1]
+}
+
+/// Slopes of a puddle on a GPU at a time, in levels.
+#[derive(Clone, Debug)]
+pub struct PuddleSlopes {
+    slopes: ComputeKernel,
+    pyramid: ComputeKernel,
+    grid: PuddleGrid,
+    links: wgpu::Buffer,
+    state: wgpu::Buffer,
+}
+
+impl PuddleSlopes {
+    /// Columns and rows of the finest level.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        self.grid.size
+    }
+
+    /// Buffer of the state that has these slopes.
+    #[must_use]
+    pub fn state(&self) -> &wgpu::Buffer {
+        &self.state
+    }
+
+    /// Number of texels of all levels.
+    #[must_use]
+    pub fn texel_count(&self) -> u32 {
+        let [columns, rows] = self.grid.size;
+        let below: u32 = slope_levels(self.grid.size).iter().map(|level| level.size[0] * level.size[1]).sum();
+        columns * rows + below
+    }
+
+    /// Prepares the kernels that write all levels, as [`Puddle::slopes`](crate::puddle::Puddle::slopes) and the means of four below
+    /// it, into the texels of a storage buffer from number `first` on: four numbers each, the finest level first.
+    ///
+    /// # Errors
+    /// Errors of the GPU.
+    pub fn prepare(
+        &self,
+        buffers: &impl BufferSource,
+        texels: &wgpu::Buffer,
+        first: u32,
+    ) -> Result<PuddleSlopesPass<'_>, GpuError> {
+        let uniform = buffers.uniform("puddle grid", &PuddleGrid { first_texel: first, ..self.grid })?;
+        let bound = [(0, &uniform), (1, &self.links), (2, &self.state), (4, texels)];
+        let finest = self.slopes.bind_at(buffers, bound)?;
+        let mut coarser = Vec::new();
+        for level in slope_levels(self.grid.size) {
+            let (source, target_texel) = (first + level.source, first + level.target_texel);
+            let uniform = buffers.uniform("puddle level", &PyramidLevel { source, target_texel, ..level })?;
+            let groups = [level.size[0].div_ceil(8), level.size[1].div_ceil(8), 1];
+            coarser.push((self.pyramid.bind(buffers, &[&uniform, texels])?, groups));
+        }
+        Ok(PuddleSlopesPass { of: self, finest, coarser })
+    }
+}
+
+/// Slopes of a puddle, ready to be written.
+#[derive(Debug)]
+pub struct PuddleSlopesPass<'a> {
+    of: &'a PuddleSlopes,
+    finest: wgpu::BindGroup,
+    coarser: Vec<(wgpu::BindGroup, [u32; 3])>,
+}
+
+impl PuddleSlopesPass<'_> {
+    /// The dispatches in their order, the finest level first.
+    #[must_use]
+    pub fn dispatches(&self) -> Vec<Dispatch<'_>> {
+        let finest = self.of.slopes.dispatch(&self.finest, groups_of(&self.of.grid));
+        let coarser = self.coarser.iter().map(|(bound, groups)| self.of.pyramid.dispatch(bound, *groups));
+        std::iter::once(finest).chain(coarser).collect()
     }
 }

@@ -52,8 +52,10 @@ pub struct PuddleGrid {
     pub half_storage: u32,
     /// Inverse of eight cells, 1/m: factor of the Sobel sums.
     pub slope: f32,
+    /// First texel of the slopes that `main_puddle_normal_slopes` writes.
+    pub first_texel: u32,
     /// Padding of the WGSL layout.
-    pub padding: [u32; 2],
+    pub padding: u32,
 }
 
 /// Value of the neighbor, or of the cell itself where the link is missing.

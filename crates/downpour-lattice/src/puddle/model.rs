@@ -291,7 +291,8 @@ impl Model {
             halo: self.degree * steps,
             half_storage: u32::from(self.options.storage == PuddleStorage::Half),
             slope: (1.0 / (8.0 * cell)) as f32,
-            padding: [0; 2],
+            first_texel: 0,
+            padding: 0,
         }
     }
 

@@ -199,19 +199,26 @@ impl PictureRenderer {
             check_turns(&frame)?;
         }
         let mut passes = FramePasses::new(&self.gpu, MAX_PASSES)?;
-        let uploaded = passes.host("upload", || {
-            let mut last = self.uploaded.lock().unwrap_or_else(PoisonError::into_inner);
-            // What the scene shares with that of the last picture is on the device, and so are its masks.
-            let scene = self.scene.upload_after(scene, last.as_ref().map(|(scene, _)| scene))?;
-            let masks = self.rain.upload_after(masks, last.as_ref().map(|(_, masks)| masks))?;
-            *last = Some((scene.clone(), masks.clone()));
-            drop(last);
-            Ok::<_, GpuError>((scene, masks))
-        })?;
         let _drawing = self.drawing.lock().unwrap_or_else(PoisonError::into_inner);
         let pool = &*self.pool;
         pool.begin_frame();
         let made_before = pool.made();
+        let uploaded = passes.host("upload", || {
+            let mut last = self.uploaded.lock().unwrap_or_else(PoisonError::into_inner);
+            // What the scene shares with that of the last picture is on the device, and so are its masks. After an error nothing is.
+            let (scene, masks) = match last.take() {
+                Some((before, of_masks)) => {
+                    (before.renewed(pool, scene)?, self.rain.upload_after(masks, Some(&of_masks))?)
+                }
+                None => (SceneOnGpu::first(pool, scene)?, self.rain.upload_after(masks, None)?),
+            };
+            *last = Some((scene.clone(), masks.clone()));
+            drop(last);
+            Ok::<_, GpuError>((scene, masks))
+        })?;
+        if let Some(ripples) = uploaded.0.ripples(pool)? {
+            passes.run("ripples", &ripples.dispatches())?;
+        }
         let pace = *self.pace.lock().unwrap_or_else(PoisonError::into_inner);
         let eye = viewpoint.eye.as_dvec3();
         let camera = frame.camera;
@@ -258,7 +265,6 @@ impl PictureRenderer {
             }
         };
         let plate = self.scene.plate_around(pool, &uploaded.0, &frame, &rain, environment)?;
-        let mut stepped_bytes = 0;
         let (falling, count, search) = passes.host("drops to the device", || match drops {
             PictureDrops::Listed(drops) => {
                 let falling: Vec<EyeDrop> = drops.par_iter().map(|drop| EyeDrop::new(drop, eye)).collect();
@@ -269,7 +275,7 @@ impl PictureRenderer {
                 Ok::<_, GpuPictureError>(listed(FallingPass::Field(search)))
             }
             PictureDrops::Stepped(simulation, picture) => {
-                stepped_bytes = simulation.take_written();
+                pool.note_written(simulation.take_written());
                 Ok(listed(FallingPass::Stepped(simulation.list(pool, &picture)?)))
             }
         })?;
@@ -326,8 +332,7 @@ impl PictureRenderer {
             *kept = stays;
         }
         drop(kept);
-        let (bytes_uploaded, buffers_made) = (pool.written() + stepped_bytes, pool.made() - made_before);
-        let device = DeviceUse { bytes_uploaded, buffers_made };
+        let device = DeviceUse { bytes_uploaded: pool.written(), buffers_made: pool.made() - made_before };
         Ok(PictureOnGpu {
             gpu: self.gpu.clone(),
             readbacks: self.readbacks.clone(),

@@ -1,5 +1,6 @@
 //! The picture of a scene on a GPU: the same rays, the same buffers.
 
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, FramePasses, Gpu, GpuError, wgpu};
@@ -7,9 +8,11 @@ use downpour_shaders::render::scene::{
     SKYLIGHT_KERNEL, SKYLIGHT_PASSES, TRACE_KERNEL, TRACE_SAMPLE_KERNEL, TRACE_SEEN_KERNEL, TRACE_STATE_BYTES,
 };
 
+use downpour_lattice::gpu::puddle::PuddleSlopesPass;
 use downpour_render::camera::Camera;
 use downpour_render::gpu::LightingOnGpu;
 
+use super::ripples::RipplesOnGpu;
 use crate::data::{RenderFrame, SceneData};
 use crate::trace::TraceAmbient;
 
@@ -19,6 +22,9 @@ const PIXELS_PER_DISPATCH: u32 = 1 << 17;
 /// Time of a dispatch on a device whose speed is known, ms. A fast device has all pixels in one: short dispatches leave it idle at the
 /// end of each.
 const DISPATCH_MS: f64 = 60.0;
+
+/// Rows of the table that are compared and written together.
+const ROWS_PER_BLOCK: usize = 16;
 
 /// How a device comes to the samples of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -340,11 +346,50 @@ impl SceneOnGpu {
     /// # Errors
     /// As [`ScenePipeline::upload`].
     pub fn new(gpu: &Gpu, scene: &SceneData, before: Option<&Self>) -> Result<Self, GpuError> {
+        let is_same = |before: &&Self| {
+            before.of.table == scene.table && before.of.ripples.is_none() && scene.ripples.is_none()
+        };
+        let table = match before.filter(is_same) {
+            Some(before) => before.table.clone(),
+            None => table_of(gpu, scene)?,
+        };
+        Self::with_table(gpu, scene, before, table)
+    }
+
+    /// Brings a scene to a device that has none yet, and counts what is written.
+    ///
+    /// # Errors
+    /// As [`ScenePipeline::upload`].
+    pub(super) fn first(buffers: &impl BufferSource, scene: &SceneData) -> Result<Self, GpuError> {
+        Self::with_table(buffers, scene, None, table_of(buffers, scene)?)
+    }
+
+    /// The same scene a moment later in place of this one: of its table only the rows that differ are written.
+    ///
+    /// # Errors
+    /// As [`ScenePipeline::upload`].
+    pub(super) fn renewed(self, buffers: &impl BufferSource, scene: &SceneData) -> Result<Self, GpuError> {
+        let table = if self.table.size() >= table_bytes(scene) {
+            write_changes(buffers, &self.table, Some(&self.of), scene);
+            self.table.clone()
+        } else {
+            table_of(buffers, scene)?
+        };
+        Self::with_table(buffers, scene, Some(&self), table)
+    }
+
+    /// A scene whose table is on the device.
+    fn with_table(
+        buffers: &impl BufferSource,
+        scene: &SceneData,
+        before: Option<&Self>,
+        table: wgpu::Buffer,
+    ) -> Result<Self, GpuError> {
         macro_rules! buffer {
             ($field:ident, $label:literal) => {
                 match before.filter(|before| Arc::ptr_eq(&before.of.$field, &scene.$field)) {
                     Some(before) => before.$field.clone(),
-                    None => gpu.storage_buffer($label, &scene.$field)?,
+                    None => on_device(buffers, $label, &scene.$field)?,
                 }
             };
         }
@@ -352,14 +397,21 @@ impl SceneOnGpu {
             nodes: buffer!(nodes, "scene nodes"),
             triangles: buffer!(triangles, "scene triangles"),
             corners: buffer!(corners, "scene corners"),
-            table: match before.filter(|before| before.of.table == scene.table) {
-                Some(before) => before.table.clone(),
-                None => gpu.storage_buffer("scene table", &scene.table)?,
-            },
+            table,
             texels: buffer!(texels, "scene texels"),
             sky: buffer!(sky, "scene sky"),
             of: scene.clone(),
         })
+    }
+
+    /// Prepares the kernels that write the ripples of a lattice on the device into the table, which have to be submitted before the scene is
+    /// traced. `None` if there is no such lattice.
+    ///
+    /// # Errors
+    /// As [`ScenePipeline::upload`].
+    pub fn ripples(&self, buffers: &impl BufferSource) -> Result<Option<PuddleSlopesPass<'_>>, GpuError> {
+        let first = self.of.table.len() as u32;
+        self.of.ripples.as_ref().map(|ripples| ripples.prepare(buffers, &self.table, first)).transpose()
     }
 
     /// Lamps and obstacles of the scene with the table of `scene`, which differs from what was uploaded in its lights only, for
@@ -403,5 +455,88 @@ impl SceneOnGpu {
         let [nodes, triangles, corners] = [&self.nodes, &self.triangles, &self.corners];
         let all = [frame, nodes, triangles, corners, &self.table, &self.texels, &self.sky];
         std::array::from_fn(|binding| (binding as u32, all[binding]))
+    }
+}
+
+/// A storage buffer with some data.
+fn on_device<T: bytemuck::Pod>(
+    buffers: &impl BufferSource,
+    label: &'static str,
+    data: &[T],
+) -> Result<wgpu::Buffer, GpuError> {
+    let bytes: &[u8] = bytemuck::cast_slice(data);
+    let buffer = buffers.gpu().empty_buffer(label, bytes.len() as u64, wgpu::BufferUsages::STORAGE)?;
+    buffers.write(&buffer, bytes);
+    Ok(buffer)
+}
+
+/// Bytes of the table of a scene with room for the ripples of a lattice on the device.
+fn table_bytes(scene: &SceneData) -> u64 {
+    let ripples = scene.ripples.as_ref().map_or(0, RipplesOnGpu::row_count);
+    (scene.table.len() as u64 + u64::from(ripples)) * 16
+}
+
+/// The table of a scene on the device, with room for the ripples of a lattice there.
+fn table_of(buffers: &impl BufferSource, scene: &SceneData) -> Result<wgpu::Buffer, GpuError> {
+    let table = buffers.gpu().empty_buffer("scene table", table_bytes(scene), wgpu::BufferUsages::STORAGE)?;
+    write_changes(buffers, &table, None, scene);
+    Ok(table)
+}
+
+/// Writes the rows of a table that differ from those of the scene that is there, and the row that says where ripples on the device are.
+fn write_changes(
+    buffers: &impl BufferSource,
+    table: &wgpu::Buffer,
+    before: Option<&SceneData>,
+    scene: &SceneData,
+) {
+    let there = before.map_or(&[][..], |before| &before.table);
+    // That row is not the host's there.
+    let own = before.filter(|before| before.ripples.is_some()).map(|before| before.ripples_row() as usize);
+    let own = own.and_then(|row| scene.table.get(row).map(|_| row..row + 1));
+    for rows in changed_rows(there, &scene.table).into_iter().chain(own) {
+        buffers.write_at(table, 16 * rows.start as u64, bytemuck::cast_slice(&scene.table[rows]));
+    }
+    if let Some(ripples) = &scene.ripples {
+        let head = ripples.head(scene.table.len() as u32);
+        buffers.write_at(table, 16 * u64::from(scene.ripples_row()), bytemuck::bytes_of(&head));
+        buffers.note_written(ripples.bytes_uploaded);
+    }
+}
+
+/// Ranges of rows that differ, in whole blocks.
+fn changed_rows(before: &[[u32; 4]], table: &[[u32; 4]]) -> Vec<Range<usize>> {
+    let mut changed: Vec<Range<usize>> = Vec::new();
+    for (k, block) in table.chunks(ROWS_PER_BLOCK).enumerate() {
+        let rows = k * ROWS_PER_BLOCK..k * ROWS_PER_BLOCK + block.len();
+        if before.get(rows.clone()) == Some(block) {
+            continue;
+        }
+        match changed.last_mut() {
+            Some(last) if last.end == rows.start => last.end = rows.end,
+            _ => changed.push(rows),
+        }
+    }
+    changed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_that_differ_are_written_in_blocks() {
+        let changed = |before: &[[u32; 4]], table: &[[u32; 4]]| -> Vec<[usize; 2]> {
+            changed_rows(before, table).into_iter().map(|rows| [rows.start, rows.end]).collect()
+        };
+        let table: Vec<[u32; 4]> = (0..100).map(|k| [k; 4]).collect();
+        assert_eq!(changed(&[], &table), [[0, 100]]);
+        assert!(changed(&table, &table).is_empty());
+        let mut before = table.clone();
+        (before[15], before[17], before[99]) = ([0; 4], [0; 4], [0; 4]);
+        assert_eq!(changed(&before, &table), [[0, 32], [96, 100]]);
+        // A table that has grown, and one that is shorter.
+        assert_eq!(changed(&table[..40], &table), [[32, 100]]);
+        assert!(changed(&table, &table[..32]).is_empty());
     }
 }

@@ -1,10 +1,10 @@
-//! Reasons why there is no puddle.
+//! Errors of puddles.
 
 use downpour_drop::DropError;
 use downpour_lattice::LatticeError;
 
 /// Error of puddles.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, thiserror::Error)]
 #[non_exhaustive]
 pub enum PuddleError {
     /// The lattice of the ripples.
@@ -13,4 +13,24 @@ pub enum PuddleError {
     /// The rain on it.
     #[error(transparent)]
     Rain(#[from] DropError),
+    /// The GPU that holds the lattice.
+    #[cfg(feature = "wgpu")]
+    #[error(transparent)]
+    Gpu(#[from] downpour_gpu::GpuError),
+}
+
+#[cfg(feature = "wgpu")]
+impl From<downpour_lattice::gpu::puddle::GpuPuddleError> for PuddleError {
+    fn from(error: downpour_lattice::gpu::puddle::GpuPuddleError) -> Self {
+        use downpour_lattice::gpu::puddle::GpuPuddleError;
+        match error {
+            GpuPuddleError::Lattice(error) => Self::Lattice(error),
+            GpuPuddleError::Gpu(error) => Self::Gpu(error),
+            // A reason of a later version of the lattice.
+            other => Self::Gpu(downpour_gpu::GpuError::Refused {
+                what: "a puddle".to_owned(),
+                reason: other.to_string(),
+            }),
+        }
+    }
 }

@@ -1,8 +1,12 @@
-//! The ripples of rain on water, of all puddles: a lattice of the simulator, and its slopes in levels.
+//! Ripples of rain on the water of all puddles: a lattice, and its slopes in levels. On a device both stay there.
 
 use downpour_drop::distribution::DropSizeDistribution;
-use downpour_lattice::puddle::{Puddle, PuddleBorder, PuddleOptions, PuddleRain};
-use downpour_math::pyramid::{PyramidRounding, pyramid_append, pyramid_levels};
+#[cfg(feature = "wgpu")]
+use downpour_lattice::gpu::puddle::{GpuPuddle, PuddleKernels};
+use downpour_lattice::puddle::{
+    Impact, Puddle, PuddleBorder, PuddleOptions, PuddleRain, slope_levels as levels_below,
+};
+use downpour_math::pyramid::pyramid_append;
 use downpour_wind::Keyed;
 
 use super::PuddleError;
@@ -28,11 +32,54 @@ const STEPS_OF_RATE: i64 = 50;
 /// Ripples of water in the rain.
 #[derive(Debug)]
 pub struct Ripples {
-    lattice: Puddle,
+    lattice: Lattice,
+    /// True if nothing has fallen since the water was level: steps leave it so.
+    is_level: bool,
     rain: Option<PuddleRain>,
     changes: Option<Changes>,
-    /// The step that has been made, counted from time 0.
+    /// Number of the last step, counted from time 0.
     step: i64,
+}
+
+/// The lattice, on the CPU or on a device.
+#[derive(Debug)]
+enum Lattice {
+    Cpu(Box<Puddle>),
+    #[cfg(feature = "wgpu")]
+    Gpu {
+        lattice: Box<GpuPuddle>,
+        /// Bytes that the lattice had uploaded when its slopes were last asked for.
+        counted: std::cell::Cell<u64>,
+    },
+}
+
+impl Lattice {
+    fn set_level(&mut self) -> Result<(), PuddleError> {
+        match self {
+            Self::Cpu(lattice) => **lattice = Puddle::new(&options())?,
+            #[cfg(feature = "wgpu")]
+            Self::Gpu { lattice, .. } => lattice.set_level()?,
+        }
+        Ok(())
+    }
+
+    fn seed(&mut self, impacts: &[Impact]) -> Result<(), PuddleError> {
+        match self {
+            Self::Cpu(lattice) => lattice.seed(impacts)?,
+            #[cfg(feature = "wgpu")]
+            Self::Gpu { lattice, .. } => lattice.seed(impacts)?,
+        }
+        Ok(())
+    }
+
+    fn step(&mut self) -> Result<(), PuddleError> {
+        match self {
+            Self::Cpu(lattice) => lattice.step(STEP_S as f32)?,
+            #[cfg(feature = "wgpu")]
+            Self::Gpu { lattice, .. } => lattice.step(STEP_S as f32)?,
+        };
+        Ok(())
+    }
 }
 
 /// A rate that changes.
@@ -70,9 +117,27 @@ impl Ripples {
     /// # Errors
     /// [`PuddleError`] if the lattice refuses.
     pub fn new(rain: Option<&DropSizeDistribution>, seed: u64, time_s: f64) -> Result<Self, PuddleError> {
-        let lattice = level_water()?;
+        let lattice = Lattice::Cpu(Box::new(Puddle::new(&options())?));
         let rain = rain.map(|rain| PuddleRain::new(rain, seed));
-        Ok(Self { lattice, rain, changes: None, step: step_of(time_s - MEMORY_S) })
+        Ok(Self { lattice, is_level: true, rain, changes: None, step: step_of(time_s - MEMORY_S) })
+    }
+
+    /// Holds and steps the lattice on a device from now on, beginning with level water. After an error it stays where it is.
+    ///
+    /// # Errors
+    /// [`PuddleError::Gpu`]: what the device says.
+    #[cfg(feature = "wgpu")]
+    pub fn move_to_device(&mut self, kernels: &PuddleKernels) -> Result<(), PuddleError> {
+        let lattice = Box::new(GpuPuddle::with_kernels(kernels, &options())?);
+        self.lattice = Lattice::Gpu { lattice, counted: std::cell::Cell::default() };
+        self.is_level = true;
+        Ok(())
+    }
+
+    /// True if a device holds the lattice.
+    #[must_use]
+    pub fn is_on_device(&self) -> bool {
+        !matches!(self.lattice, Lattice::Cpu(_))
     }
 
     /// The same of a rain whose rate in mm/h changes; `heaviest` is that of the largest rate.
@@ -102,18 +167,22 @@ impl Ripples {
         let until = step_of(time_s);
         let anew = step_of(time_s - 2.0 * MEMORY_S);
         if self.step < anew {
-            self.lattice = level_water()?;
-            self.step = anew;
+            self.lattice.set_level()?;
+            (self.is_level, self.step) = (true, anew);
         }
-        let extent = self.lattice.extent_m();
+        let extent = [CELLS as f32 * CELL_M; 2];
         while self.step < until {
             if let Some(changes) = &mut self.changes {
                 changes.follow(self.step, &mut self.rain)?;
             }
             if let Some(rain) = &self.rain {
-                self.lattice.seed(&rain.impacts(extent, self.step as u64, STEP_S as f32)?)?;
+                let impacts = rain.impacts(extent, self.step as u64, STEP_S as f32)?;
+                self.is_level &= impacts.is_empty();
+                self.lattice.seed(&impacts)?;
             }
-            self.lattice.step(STEP_S as f32)?;
+            if !self.is_level {
+                self.lattice.step()?;
+            }
             self.step += 1;
         }
         Ok(())
@@ -125,39 +194,56 @@ impl Ripples {
         (CELLS, CELLS.ilog2(), CELL_M)
     }
 
-    /// Slopes along the lattice's axes, and the mean of the square of the slope, of all levels, the finest first.
+    /// Slopes along the lattice's axes, and the mean of the square of the slope, of all levels, the finest first. Empty if a device holds
+    /// the lattice.
     #[must_use]
     pub fn slopes(&self) -> Vec<[f32; 4]> {
-        let finest = self.lattice.normals().into_iter().map(|[x, y, z]| {
-            let [sx, sz] = [-x / y.max(1.0e-3), -z / y.max(1.0e-3)];
-            [sx, sz, sx * sx + sz * sz, 0.0]
-        });
-        slope_levels(finest.collect(), CELLS as usize)
+        match &self.lattice {
+            Lattice::Cpu(lattice) => slope_levels(lattice.slopes(), CELLS as usize),
+            #[cfg(feature = "wgpu")]
+            Lattice::Gpu { .. } => Vec::new(),
+        }
+    }
+
+    /// Ripples of the present step on the device that holds them. `None` for level water, and if the CPU holds the lattice.
+    #[cfg(feature = "wgpu")]
+    #[must_use]
+    pub fn on_device(&self) -> Option<crate::gpu::RipplesOnGpu> {
+        let Lattice::Gpu { lattice, counted } = &self.lattice else { return None };
+        let bytes_uploaded = lattice.bytes_uploaded() - counted.replace(lattice.bytes_uploaded());
+        let (_, levels, cell_m) = self.shape();
+        (!self.is_level).then(|| crate::gpu::RipplesOnGpu {
+            slopes: lattice.slopes(),
+            step: self.step,
+            levels,
+            cell_m,
+            bytes_uploaded,
+        })
     }
 }
 
-fn level_water() -> Result<Puddle, PuddleError> {
-    Ok(Puddle::new(&PuddleOptions {
+/// Options of the lattice.
+fn options() -> PuddleOptions {
+    PuddleOptions {
         size: [CELLS; 2],
         cell_m: CELL_M,
         depth_m: DEPTH_M,
         border: PuddleBorder::Open,
         ..PuddleOptions::default()
-    })?)
+    }
 }
 
 /// A square of texels, `size` (a power of two) each way, with all levels that are means of four of the one before, down to
 /// two by two: what [`PuddleRows`](super::PuddleRows) takes.
 #[must_use]
 pub fn slope_levels(mut texels: Vec<[f32; 4]>, size: usize) -> Vec<[f32; 4]> {
-    let levels = pyramid_levels([size as u32; 2], PyramidRounding::Down);
-    for level in levels.iter().filter(|level| level.size[0] > 1) {
-        pyramid_append(&mut texels, level);
+    for level in levels_below([size as u32; 2]) {
+        pyramid_append(&mut texels, &level);
     }
     texels
 }
 
-/// The number of the step that ends at or before a time, from time 0.
+/// Number of the step that ends at or before a time, from time 0.
 fn step_of(time_s: f64) -> i64 {
     (time_s / STEP_S + 1.0e-6).floor() as i64
 }

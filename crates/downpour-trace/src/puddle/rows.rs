@@ -44,7 +44,7 @@ pub struct PuddleRows<'a> {
     pub puddles: &'a [(PuddleMap, PuddleLook)],
     /// Columns of the finest level of the ripples, levels, edge of a cell (m).
     pub shape: (u32, u32, f32),
-    /// [`Ripples::slopes`](super::Ripples::slopes); none: level water.
+    /// [`Ripples::slopes`](super::Ripples::slopes); none: level water, or ripples that a device holds.
     pub slopes: &'a [[f32; 4]],
     /// Added to the position of each map, m.
     pub shift: Vec3,
@@ -100,10 +100,14 @@ impl SceneData {
         }
     }
 
+    /// Row of the lattice of the ripples, behind the puddles.
+    pub(crate) fn ripples_row(&self) -> u32 {
+        self.puddles + self.puddle_count * PUDDLE_WATER_ROWS
+    }
+
     /// Reads the lattice of the ripples.
     pub(crate) fn puddle_ripples(&self) -> RenderRipples {
-        let [size, levels, first, cell] =
-            self.table[(self.puddles + self.puddle_count * PUDDLE_WATER_ROWS) as usize];
+        let [size, levels, first, cell] = self.table[self.ripples_row() as usize];
         RenderRipples { size, levels, first, cell: f32::from_bits(cell) }
     }
 
@@ -122,6 +126,10 @@ impl SceneData {
         let puddles = &rows.puddles[..rows.puddles.len().min(PUDDLE_WATER_MAX_COUNT as usize)];
         self.puddles = self.table.len() as u32;
         self.puddle_count = puddles.len() as u32;
+        #[cfg(feature = "wgpu")]
+        {
+            self.ripples = None;
+        }
         if !puddles.is_empty() {
             self.add_puddles(puddles, rows);
         }

@@ -6,11 +6,12 @@ use downpour_render::camera::{Camera, Viewpoint};
 use downpour_render::glass::{GlassPicture, WetPane};
 use downpour_render::glow::Glow;
 use downpour_render::picture::{Picture, PictureOptions, timed};
-use downpour_render::rain::DropMasks;
+use downpour_render::rain::{DropMasks, RefractionForm};
 use downpour_trace::frame_scene::FrameScene;
 use downpour_trace::kept::KeptPlate;
 use downpour_trace::picture::{TracedPlate, render_picture_on};
-use downpour_weather::Weather;
+use downpour_trace::wet_ground::WetGround;
+use downpour_weather::{Loaded, Weather};
 
 use super::RendererError;
 use super::drops::{Drops, Found};
@@ -68,6 +69,9 @@ pub struct Device {
     gpu: Option<downpour_gpu::Gpu>,
     /// True if the CPU draws what is too much for the GPU.
     falls_back: bool,
+    /// True if a software driver holds the ripples of puddles, too.
+    #[cfg(feature = "wgpu")]
+    drives_ripples: bool,
 }
 
 impl Device {
@@ -83,6 +87,8 @@ impl Device {
             #[cfg(feature = "wgpu")]
             gpu: None,
             falls_back: false,
+            #[cfg(feature = "wgpu")]
+            drives_ripples: false,
         }
     }
 
@@ -90,7 +96,15 @@ impl Device {
     #[cfg(feature = "wgpu")]
     #[must_use]
     pub fn gpu(gpu: downpour_gpu::Gpu, falls_back: bool) -> Self {
-        Self { gpu: Some(gpu), falls_back }
+        Self { gpu: Some(gpu), falls_back, drives_ripples: false }
+    }
+
+    /// Holds and steps the ripples of puddles on a software driver, too. By itself it has those of the CPU, which is faster at them; other
+    /// GPUs always hold them.
+    #[cfg(feature = "wgpu")]
+    #[must_use]
+    pub fn with_ripples_on_software_driver(self) -> Self {
+        Self { drives_ripples: true, ..self }
     }
 }
 
@@ -187,6 +201,10 @@ impl std::fmt::Debug for Drawer {
 }
 
 impl Drawer {
+    #[cfg_attr(
+        not(feature = "wgpu"),
+        expect(clippy::needless_pass_by_value, reason = "a GPU that it holds is taken over")
+    )]
     pub(super) fn new(device: Device) -> Result<Self, RendererError> {
         #[cfg(feature = "wgpu")]
         if let Some(gpu) = device.gpu {
@@ -202,7 +220,7 @@ impl Drawer {
             let mut drawer = Self { computer, falls_back: device.falls_back, kept, on_gpu: None };
             match renderer {
                 Ok(renderer) => {
-                    drawer.on_gpu = Some(OnGpu::new(gpu, renderer));
+                    drawer.on_gpu = Some(OnGpu::new(gpu, renderer, device.drives_ripples));
                 }
                 Err(error) => {
                     let error = error.into();
@@ -256,6 +274,35 @@ impl Drawer {
             }
         }
         Ok(WetPane::new(weather, viewpoint, first_s)?)
+    }
+
+    /// The puddles of a weather that are to be seen at a refraction of drops: the GPU holds their ripples, where that is faster and has room
+    /// for them.
+    #[cfg_attr(not(feature = "wgpu"), expect(unused_variables, reason = "the CPU holds all ripples"))]
+    pub(super) fn ground(
+        &self,
+        weather: &Weather,
+        loaded: &Loaded,
+        first: &FrameScene,
+        first_s: f64,
+        refraction: RefractionForm,
+    ) -> Result<Option<WetGround>, RendererError> {
+        let ground = WetGround::new(weather, loaded, first, first_s)?;
+        // A pane before the papers' captures has an environment map that the CPU traces.
+        let is_seen_by_cpu = weather.glass.is_some() && refraction != RefractionForm::Direction;
+        match ground {
+            #[cfg(feature = "wgpu")]
+            Some(mut ground) if !is_seen_by_cpu => {
+                if let Some(on_gpu) = self.on_gpu.as_ref().filter(|on| on.holds_ripples())
+                    && let Err(error) = on_gpu.hold_ripples(&mut ground)
+                    && !error.is_too_much_for_gpu()
+                {
+                    return Err(error);
+                }
+                Ok(Some(ground))
+            }
+            ground => Ok(ground),
+        }
     }
 
     /// The device that finds or steps drops, and the number of drops that it has room for.

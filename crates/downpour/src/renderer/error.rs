@@ -91,7 +91,8 @@ impl RendererError {
             Self::Gpu(error)
             | Self::Picture(GpuPictureError::Gpu(error))
             | Self::Shower(ShowerError::Gpu(error))
-            | Self::Pane(PaneError::Gpu(error)) => Some(error),
+            | Self::Pane(PaneError::Gpu(error))
+            | Self::Puddle(PuddleError::Gpu(error)) => Some(error),
             _ => None,
         }
     }

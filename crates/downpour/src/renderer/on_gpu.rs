@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use downpour_gpu::Gpu;
+use downpour_lattice::gpu::puddle::PuddleKernels;
 use downpour_render::gpu::{BehindGlass, EnvironmentMap, GlassRenderer};
 use downpour_render::picture::PictureOptions;
 use downpour_render::rain::DropMasks;
@@ -14,6 +15,7 @@ use downpour_trace::frame_scene::FrameScene;
 use downpour_trace::gpu::{
     DisplayReadback, FieldDrops, PictureDrops, PictureOnGpu, PictureRenderer, PictureUse,
 };
+use downpour_trace::wet_ground::WetGround;
 
 use super::RendererError;
 use super::computer::{Painted, PaneView, ThroughGlass};
@@ -28,11 +30,35 @@ pub(super) struct OnGpu {
     glass: OnceCell<GlassRenderer>,
     /// The rain in closed form of the last frame, and the same on the device.
     field: RefCell<Option<(Arc<RainField>, FieldOnGpu)>>,
+    /// True if ripples of puddles stay on the device.
+    holds_ripples: bool,
+    /// Made for the first puddles.
+    puddles: OnceCell<PuddleKernels>,
 }
 
 impl OnGpu {
-    pub(super) fn new(gpu: Gpu, renderer: PictureRenderer) -> Self {
-        Self { gpu, renderer, glass: OnceCell::new(), field: RefCell::default() }
+    /// `drives_ripples`: a software driver holds the ripples of puddles, too.
+    pub(super) fn new(gpu: Gpu, renderer: PictureRenderer, drives_ripples: bool) -> Self {
+        let holds_ripples = drives_ripples || !gpu.adapter().is_software();
+        let (glass, puddles) = (OnceCell::new(), OnceCell::new());
+        Self { gpu, renderer, glass, field: RefCell::default(), holds_ripples, puddles }
+    }
+
+    /// True if ripples of puddles stay on the device.
+    pub(super) fn holds_ripples(&self) -> bool {
+        self.holds_ripples
+    }
+
+    /// Moves the ripples of puddles to the device.
+    pub(super) fn hold_ripples(&self, ground: &mut WetGround) -> Result<(), RendererError> {
+        let kernels = match self.puddles.get() {
+            Some(kernels) => kernels,
+            None => {
+                let made = PuddleKernels::new(&self.gpu)?;
+                self.puddles.get_or_init(|| made)
+            }
+        };
+        Ok(ground.move_to_device(kernels)?)
     }
 
     pub(super) fn gpu(&self) -> &Gpu {
