@@ -156,7 +156,8 @@ impl StepListFrame {
     }
 }
 
-/// Id of a drop: unique, and constant while the drop exists. A Feistel network, which maps no two of 64 bits to one.
+/// Id of a drop by what it is known by, constant while the drop exists: a Feistel network, which maps no two of 64 bits to one. Droplets of a
+/// view that rebounded in one step from drops that entered in one step and are alike share one.
 #[must_use]
 pub fn step_list_id(high: u32, low: u32) -> [u32; 2] {
     let mut words = [high, low];

@@ -1,5 +1,6 @@
 //! Frames of the street for a live display, against frames with all their layers: `frame` traces the scene for each, `kept` draws
-//! rain before a plate that stays, `display` reads no more than pixels of that, `drag` changes the rain rate before each.
+//! rain before a plate that stays, `display` reads no more than pixels of that, `drag` changes the rain rate before each. `windy` is the day
+//! with a tornado and turbulence, in which rain goes step by step; there `drag` changes the tornado.
 //!
 //! At 1920x1080 on hardware, at 240x135 on a software driver.
 
@@ -9,22 +10,42 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use downpour::gpu::{AdapterChoice, Gpu};
 use downpour::scene::Budget;
 use downpour::weather::Roots;
+use downpour::wind::{Turbulence, Wind, WindPrimitive, WindTornado};
 use downpour::{Device, Renderer, RendererOptions, Source};
+use glam::Vec3;
 
 /// Frames of rays that refine a plate.
 const KEPT_FRAMES: u32 = 4;
 
+/// A tornado of a circulation, m^2/s, in the street, and turbulence.
+fn tornado(circulation: f32) -> Wind {
+    let tornado = WindPrimitive::Tornado(WindTornado {
+        circulation,
+        discharge: 40.0,
+        base: Vec3::new(0.5, 0.0, -16.0),
+        axis: Vec3::Y,
+        height: 20.0,
+        core_radius: 2.0,
+    });
+    let turbulence = Turbulence { speed: 2.0, length: 8.0, seed: 4 };
+    Wind::new(vec![tornado.into()], None, Some(turbulence)).expect("a wind")
+}
+
 fn live(c: &mut Criterion) {
     let gpu = Gpu::open(&AdapterChoice::Auto).expect("a GPU or its software driver");
     let size = if gpu.adapter().is_software() { [240, 135] } else { [1920, 1080] };
-    for name in ["day", "night"] {
-        let file = format!("../../assets/scenes/street/{name}.toml");
+    for name in ["day", "night", "windy"] {
+        let weather = if name == "windy" { "day" } else { name };
+        let file = format!("../../assets/scenes/street/{weather}.toml");
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
         // Where the program was carried without the sources, from the project's folder.
-        let path = if path.exists() { path } else { format!("assets/scenes/street/{name}.toml").into() };
+        let path = if path.exists() { path } else { format!("assets/scenes/street/{weather}.toml").into() };
         let renderer = |kept_frames| {
             let mut source = Source::read(&path, &[], &mut Budget::default()).expect("a weather");
             source.weather.size = size;
+            if name == "windy" {
+                source.weather.wind = tornado(60.0);
+            }
             let options = RendererOptions { samples: 1, kept_frames, ..RendererOptions::default() };
             let device = Device::gpu(gpu.clone(), false);
             Renderer::new(source.weather, source.loaded, options, device).expect("a renderer")
@@ -52,10 +73,15 @@ fn live(c: &mut Criterion) {
             shown.drops_drawn, shown.drops_simulated, shown.begin_ms, shown.frame_ms, shown.passes
         );
         let files = Roots::open(&path, &[]).expect("a folder");
-        let mut weather = kept.weather().clone();
+        let (mut weather, mut is_more) = (kept.weather().clone(), false);
         group.bench_function(BenchmarkId::from_parameter("drag"), |b| {
             b.iter(|| {
-                weather.rain.rate_mm_h = if weather.rain.rate_mm_h > 60.5 { 60.0 } else { 61.0 };
+                is_more = !is_more;
+                if name == "windy" {
+                    weather.wind = tornado(if is_more { 61.0 } else { 60.0 });
+                } else {
+                    weather.rain.rate_mm_h = if is_more { 61.0 } else { 60.0 };
+                }
                 kept.set_weather(weather.clone(), &files).expect("a weather");
                 kept.display(next_s()).expect("a frame")
             });

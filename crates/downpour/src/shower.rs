@@ -144,6 +144,9 @@ impl Shower {
     pub(crate) fn going_on_from(mut self, other: &Self) -> Self {
         let (weather, before) = (&self.weather, &other.weather);
         let rains_alike = weather.rain == before.rain && weather.keys.rate() == before.keys.rate();
+        if rains_alike {
+            self.last = Arc::clone(&other.last);
+        }
         if let (Form::Stepped(stepped), Form::Stepped(before), true) =
             (&mut self.form, &other.form, rains_alike)
         {

@@ -136,7 +136,7 @@ fn tornado(device: Device, first_s: f64) -> Result<Renderer, Box<dyn Error>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let models = root.join("assets/scenes/plain");
     let mut source = Source::read(&root.join(TORNADO), &[&models], &mut Budget::default())?;
-    source.weather.size = [256, 144];
+    source.weather.size = [192, 108];
     source.weather.camera.fov = Some(40.0f64.to_radians());
     source.weather.rain.rate_mm_h = 500.0;
     (source.weather.rain.bounce.fraction, source.weather.rain.bounce.size) = (0.5, 1.0);

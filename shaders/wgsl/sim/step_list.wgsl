@@ -64,7 +64,8 @@ struct StepListShown {
 // Drops that were found, of which those beyond the room are lost; drops that were looked at; drops that entered and found no slot.
 @group(0) @binding(13) var<storage, read_write> step_list_found: array<atomic<u32>, 3>;
 
-// Id of a drop: unique, and constant while the drop exists. A Feistel network, which maps no two of 64 bits to one.
+// Id of a drop by what it is known by, constant while the drop exists: a Feistel network, which maps no two of 64 bits to one. Droplets of a
+// view that rebounded in one step from drops that entered in one step and are alike share one.
 fn step_list_id(high: u32, low: u32) -> vec2u {
     var words = vec2u(high, low);
     for (var turn = 0u; turn < STEP_LIST_TURNS; turn += 1u) {

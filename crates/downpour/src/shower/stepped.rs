@@ -228,9 +228,14 @@ impl Stepped {
         Self { law, speeds, weather: weather.clone(), options, least_pixels: None, running: None }
     }
 
-    /// Takes over the drops of the same rain in another wind or before another camera.
+    /// Takes over the drops of the same rain in another wind or before another camera; of the same camera what was asked once, too.
     pub(super) fn go_on_from(&mut self, other: &Self) {
         self.running = other.running.clone().map(|running| Running { is_stale: true, ..running });
+        let (weather, before) = (&self.weather, &other.weather);
+        if weather.camera == before.camera && weather.size == before.size {
+            self.options.clone_from(&other.options);
+            self.least_pixels = other.least_pixels;
+        }
     }
 
     /// True if the rain of a time depends on the recent past alone.
