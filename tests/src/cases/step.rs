@@ -13,7 +13,7 @@ use downpour_shaders::sim::step::{MOTION, STEP, STEP_GONE, STEP_KERNEL, VOLUME, 
 use downpour_shaders::sim::step_list::{STEP_LIST, STEP_LIST_CLEAR_KERNEL, STEP_LIST_KERNEL};
 use downpour_sim::collision::{CollisionMap, CollisionOptions};
 use downpour_sim::enter::{EnterRegion, enter_chance, enter_code, enter_offset};
-use downpour_sim::field::EyeDrop;
+use downpour_sim::field::{DropKind, EyeDrop, FallingDrop};
 use downpour_sim::gpu::{CollisionMapOnGpu, GpuSimError, GpuSimulation, GpuStepInput, StepPicture};
 use downpour_sim::motion::{
     motion_average, motion_bounce, motion_diameter, motion_relax, motion_settled, motion_table_entry,
@@ -557,8 +557,23 @@ fn both(gpu: &Gpu, scenario: Scenario) -> Result<Both, GpuError> {
     })
 }
 
+/// Setup of a list.
+#[derive(Clone, Copy)]
+struct Listed {
+    volume: SimVolume,
+    walls: bool,
+    /// The eye is low above the floor, from which half of the drops rebound.
+    low: bool,
+    pane: Option<[f32; 4]>,
+    /// Time from the state to the picture, s.
+    after_s: f64,
+}
+
+const IN_BOX: Listed = Listed { volume: BOX, walls: true, low: false, pane: None, after_s: 0.04 };
+
 /// The drops of a state that a picture shows, listed on both sides: some of them land or come in again while the shutter is open.
-fn list_case(gpu: &Gpu, volume: SimVolume, walls: bool, pane: Option<[f32; 4]>) -> Result<Run, GpuError> {
+fn list_case(gpu: &Gpu, setup: Listed) -> Result<Run, GpuError> {
+    let Listed { volume, walls, low, pane, after_s } = setup;
     let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 50.0).expect("a rain");
     let shutter_s = 0.05;
     let options = SimulationOptions {
@@ -567,12 +582,15 @@ fn list_case(gpu: &Gpu, volume: SimVolume, walls: bool, pane: Option<[f32; 4]>) 
         max_drops: 6000,
         shutter_s,
         wait_s: 1.0 / 60.0,
-        bounce: Bounce { fraction: 0.5, ..Bounce::default() },
+        bounce: Bounce { fraction: 0.5, size: if low { 0.8 } else { 0.3 }, ..Bounce::default() },
         ..SimulationOptions::default()
     };
     let map = walls.then(yard);
     let eye = |step: u32| {
-        let view = view(step);
+        let mut view = view(step);
+        if low {
+            (view.eye.y, view.least_pixels) = (0.2, 0.1);
+        }
         View { shutter_s, velocity: DVec3::new(1.8, 0.0, 0.0), turning: DVec3::new(0.0, -3.0, 0.0), ..view }
     };
     let first = eye(0);
@@ -584,14 +602,18 @@ fn list_case(gpu: &Gpu, volume: SimVolume, walls: bool, pane: Option<[f32; 4]>) 
         cpu.advance(1.0 / 60.0, &StepInput { view: &eye(step), ..start }).expect("a step");
     }
     let twin = GpuSimulation::from_cpu(gpu, &cpu)?;
-    let (shown, after_s) = (eye(21), 0.04);
+    let shown = eye(21);
     let listed = cpu.visible_after(after_s, &shown, map.as_ref());
-    let outside = |drop: &downpour_sim::field::FallingDrop| match pane {
+    let outside = |drop: &FallingDrop| match pane {
         Some([x, y, z, distance]) => drop.beyond(Vec3::new(x, y, z), distance, &shown),
         None => Some(*drop),
     };
-    let expected: Vec<EyeDrop> =
-        listed.drops.iter().filter_map(outside).map(|drop| EyeDrop::new(&drop, shown.eye)).collect();
+    // On the CPU a list does not say how fast drops fall in still air.
+    let with_speed = |drop: FallingDrop| {
+        let speed = f32::from(u8::from(drop.kind == DropKind::Falling));
+        EyeDrop { speed, ..EyeDrop::new(&drop, shown.eye) }
+    };
+    let expected: Vec<EyeDrop> = listed.drops.iter().filter_map(outside).map(with_speed).collect();
     let on_gpu = map.as_ref().map(|map| CollisionMapOnGpu::upload(gpu, map)).transpose()?;
     let known = [EyeDrop { diameter: 3.0e-3, ..EyeDrop::default() }; 3];
     let picture =
@@ -605,7 +627,9 @@ fn list_case(gpu: &Gpu, volume: SimVolume, walls: bool, pane: Option<[f32; 4]>) 
     let is_whole = made.len() as u32 == found + 3 && u64::from(looked_at) == expected_looked_at(&cpu);
     assert!(is_whole && made.drain(..3).eq(known), "{found} found, {looked_at} looked at");
     let landing = expected.iter().filter(|drop| drop.present[1] < 1.0).count();
-    assert!(expected.len() > 200 && (!walls || landing > 10), "{} drops, {landing} land", expected.len());
+    let rebound = expected.iter().filter(|drop| drop.present[0] > -1.0).count();
+    println!("{} drops, {landing} land, {rebound} rebound", expected.len());
+    assert!(expected.len() > 200 && (!walls || landing > 10) && (!low || rebound * 16 > expected.len()));
     let key = |drop: &EyeDrop| (drop.id ^ drop.id_low, drop.id_low, drop.present[0] > -1.0);
     let words = |drops: Vec<EyeDrop>| -> Vec<(_, [u32; 12])> {
         let mut rows: Vec<_> = drops
@@ -614,8 +638,11 @@ fn list_case(gpu: &Gpu, volume: SimVolume, walls: bool, pane: Option<[f32; 4]>) 
                 let [x, y, z] = drop.offset.map(f32::to_bits);
                 let [u, v, w] = drop.velocity.map(f32::to_bits);
                 let [begin, end] = drop.present.map(f32::to_bits);
-                // On the CPU a list does not say how fast drops fall in still air.
-                (key(drop), [x, y, z, drop.diameter.to_bits(), u, v, w, drop.id, begin, end, 0, drop.id_low])
+                let falls = u32::from(drop.speed > 0.0);
+                (
+                    key(drop),
+                    [x, y, z, drop.diameter.to_bits(), u, v, w, drop.id, begin, end, falls, drop.id_low],
+                )
             })
             .collect();
         rows.sort_by_key(|row| row.0);
@@ -817,11 +844,19 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             )
         }),
         list("main_step_list: a view among walls, behind a pane", &[("STEP_FIELD", 0.0)], |gpu| {
-            list_case(gpu, SimVolume::View, true, Some([0.6, 0.0, -0.8, 0.9]))
+            let pane = Some([0.6, 0.0, -0.8, 0.9]);
+            list_case(gpu, Listed { volume: SimVolume::View, pane, ..IN_BOX })
         }),
-        list("main_step_list: a box", BARE, |gpu| list_case(gpu, BOX, false, None)),
-        list("main_step_list: a box with a roof", &[("STEP_FIELD", 0.0)], |gpu| {
-            list_case(gpu, BOX, true, None)
+        list("main_step_list: a box", BARE, |gpu| list_case(gpu, Listed { walls: false, ..IN_BOX })),
+        list("main_step_list: a box with a roof", &[("STEP_FIELD", 0.0)], |gpu| list_case(gpu, IN_BOX)),
+        list("main_step_list: a box that drops come into again", &[("STEP_FIELD", 0.0)], |gpu| {
+            list_case(gpu, Listed { after_s: 0.45, ..IN_BOX })
+        }),
+        list("main_step_list: a view low above a floor", &[("STEP_FIELD", 0.0)], |gpu| {
+            list_case(gpu, Listed { volume: SimVolume::View, low: true, ..IN_BOX })
+        }),
+        list("main_step_list: a box low above a floor", &[("STEP_FIELD", 0.0)], |gpu| {
+            list_case(gpu, Listed { low: true, ..IN_BOX })
         }),
         case("main_step: a cylinder", OPEN, STEPPED, |gpu| {
             let volume = SimVolume::Cylinder { base_m: [0.0, 0.0, 0.0], radius_m: 4.0, height_m: 6.0 };
