@@ -628,8 +628,9 @@ fn list_case(gpu: &Gpu, setup: Listed) -> Result<Run, GpuError> {
     assert!(is_whole && made.drain(..3).eq(known), "{found} found, {looked_at} looked at");
     let landing = expected.iter().filter(|drop| drop.present[1] < 1.0).count();
     let rebound = expected.iter().filter(|drop| drop.present[0] > -1.0).count();
-    println!("{} drops, {landing} land, {rebound} rebound", expected.len());
-    assert!(expected.len() > 200 && (!walls || landing > 10) && (!low || rebound * 16 > expected.len()));
+    let has_enough =
+        expected.len() > 200 && (!walls || landing > 10) && (!low || rebound * 16 > expected.len());
+    assert!(has_enough, "{} drops, {landing} land, {rebound} rebound", expected.len());
     let key = |drop: &EyeDrop| (drop.id ^ drop.id_low, drop.id_low, drop.present[0] > -1.0);
     let words = |drops: Vec<EyeDrop>| -> Vec<(_, [u32; 12])> {
         let mut rows: Vec<_> = drops
