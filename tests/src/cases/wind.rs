@@ -328,11 +328,12 @@ fn spread_case(gpu: &Gpu) -> Result<Run, GpuError> {
     let mask = WindMask::from_fn(&grid, |at| (at - Vec3::new(2.0, 0.0, 1.0)).length() < 4.0);
     let field = WindField::new(&grid, &primitives(), &mask).expect("a field").relative_to(origin);
     let places: Vec<(Vec3, f32)> = vec![
-        (Vec3::new(-4.0, 1.0, -3.0), 6.0),
-        (Vec3::new(-4.2, 0.6, -3.1), 0.3),
-        (Vec3::new(1.0, 2.0, 3.0), 100.0),
+        // Beside the ball, within it, and beyond an edge.
+        (Vec3::new(-9.3, 3.37, -6.21), 6.0),
+        (Vec3::new(-8.17, 5.9, -5.3), 0.3),
+        (Vec3::new(1.2, 5.3, 4.4), 100.0),
+        (Vec3::new(-4.2, 0.6, -3.1), 2.0),
         (Vec3::new(30.0, 2.0, 3.0), 4.0),
-        (Vec3::new(-0.6, 1.2, -1.2), 2.0),
     ];
     let words = |wind: Vec3, [slope, most]: [f32; 2]| [wind.x, wind.y, wind.z, slope, most].map(f32::to_bits);
     let cpu = places.iter().flat_map(|&(at, reach)| words(field.sample(at), field.spread(at, reach)));
