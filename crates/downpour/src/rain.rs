@@ -138,7 +138,7 @@ impl Rain {
             field_on_gpu: fields.upload(&field)?,
             fields,
             masks_on_gpu: rains.upload(&masks)?,
-            scene_on_gpu: SceneOnGpu::new(&gpu, &scene, None)?,
+            scene_on_gpu: SceneOnGpu::new(&gpu, &scene)?,
             host: HostPipeline::new(&gpu)?,
             pool: BufferPool::new(&gpu),
             gpu,
@@ -185,7 +185,7 @@ impl Rain {
     /// [`RainError::TooMany`] above [`MAX_TRIANGLES`], or what the GPU says; the old triangles stay.
     pub fn set_obstacles(&mut self, triangles: &[[[f32; 3]; 3]]) -> Result<(), RainError> {
         let scene = scene_of(triangles)?;
-        self.scene_on_gpu = SceneOnGpu::new(&self.gpu, &scene, None)?;
+        self.scene_on_gpu = SceneOnGpu::new(&self.gpu, &scene)?;
         (self.scene, self.has_obstacles) = (scene, !triangles.is_empty());
         Ok(())
     }

@@ -296,7 +296,6 @@ impl Shower {
         time_s: f64,
         passed: &mut dyn FnMut(u32, u32),
     ) -> Result<ShowerView, ShowerError> {
-        let pane = pane_plane(&self.weather, &frame_scene.viewpoint)?;
         let stepped = match &mut self.form {
             Form::Closed(field) => {
                 let field = Arc::clone(field);
@@ -308,6 +307,7 @@ impl Shower {
         let resolved = picture.resolved();
         let drips = View { max_drops: self.weather.rain.max_drops, ..frame_scene.view()? };
         let mut droplets = self.drips(frame_scene, &drips, resolved.least_pixels, time_s)?;
+        let pane = pane_plane(&self.weather, &frame_scene.viewpoint)?;
         if let Some(pane) = &pane {
             keep_outside(&mut droplets, pane, &view);
         }

@@ -17,7 +17,7 @@ use downpour_wind::UniformWind;
 use glam::{DVec3, Vec3};
 
 use super::GpuSimError;
-use super::list::{COUNTS, DropListOnGpu, list_buffer, made_once};
+use super::list::{BoundKernel, COUNTS, DropListOnGpu, list_buffer, made_once};
 use crate::drift::Drift;
 use crate::field::frame::{FieldQuery, ShelterFrame};
 use crate::field::{EyeDrop, RainField, check_time};
@@ -119,9 +119,6 @@ const SIXTEENTH_S: f64 = BOUNCE_SLICE as f64;
 
 /// Sixteenths of a second from one cut of a path to the sky to the next.
 const SIXTEENTHS_OF_CUT: i64 = (CUT_S / SIXTEENTH_S) as i64;
-
-/// A kernel with its bindings and its workgroups.
-type BoundKernel<'a> = (&'a ComputeKernel, wgpu::BindGroup, [u32; 3]);
 
 /// Where drops are listed, and counted.
 #[derive(Clone, Copy)]

@@ -2,12 +2,15 @@
 
 use std::sync::OnceLock;
 
-use downpour_gpu::{BufferSource, Gpu, GpuError, wgpu};
+use downpour_gpu::{BufferSource, ComputeKernel, Gpu, GpuError, wgpu};
 
 use crate::field::EyeDrop;
 
 /// Lists that differ by less than so many drops have buffers of one size.
 const LIST_STEP: u32 = 1 << 14;
+
+/// A kernel with its bindings and its workgroups.
+pub(super) type BoundKernel<'a> = (&'a ComputeKernel, wgpu::BindGroup, [u32; 3]);
 
 /// Drops of a picture on a device: those that were known, and then those that kernels find.
 #[derive(Clone, Debug)]

@@ -203,6 +203,7 @@ impl GpuSimulation {
             let (kernels, bound) = self.bound(input)?;
             let dispatches = self.dispatches(turn, &kernels, &bound);
             self.gpu.submit(&dispatches)?;
+            self.count_written(self.pool.written());
         }
         Ok(())
     }
@@ -303,7 +304,7 @@ impl GpuSimulation {
         let open = self.plan.is_open();
         if !turn.regions.is_empty() {
             let first = u64::from(turn.frame.regions_first) * size_of::<u32>() as u64;
-            self.write(&self.tables, first, bytemuck::cast_slice(&turn.regions));
+            self.pool.write_at(&self.tables, first, bytemuck::cast_slice(&turn.regions));
         }
         let groups = |count: u32| {
             let groups = count.div_ceil(GROUP);
@@ -312,18 +313,13 @@ impl GpuSimulation {
         for (number, (piece, (step, enter))) in (0..).zip(self.pieces.iter().zip(bound)) {
             let first = if open { 0 } else { piece.first };
             let frame = StepFrame { first, count: piece.count, pieces, piece: number, ..turn.frame };
-            self.write(&piece.frame, 0, bytemuck::bytes_of(&frame));
+            self.pool.write(&piece.frame, bytemuck::bytes_of(&frame));
             work.push(kernels.step.dispatch(step, groups(piece.count)));
             if let (Some(kernel), Some(bindings), 1..) = (&kernels.enter, enter, turn.frame.candidates) {
                 work.push(kernel.dispatch(bindings, groups(turn.frame.candidates.div_ceil(pieces))));
             }
         }
         work
-    }
-
-    fn write(&self, buffer: &wgpu::Buffer, offset: u64, bytes: &[u8]) {
-        self.count_written(bytes.len() as u64);
-        self.gpu.queue().write_buffer(buffer, offset, bytes);
     }
 
     /// Counts bytes that were written for the rain to the device elsewhere, such as those of its collision map.
@@ -418,7 +414,7 @@ impl GpuSimulation {
         &self,
         buffers: &impl BufferSource,
         picture: &StepPicture<'_>,
-    ) -> Result<StepListPass, GpuSimError> {
+    ) -> Result<StepListPass<'_>, GpuSimError> {
         let state = StepBuffers {
             pieces: self.pieces.iter().map(Piece::slots).collect(),
             tables: &self.tables,

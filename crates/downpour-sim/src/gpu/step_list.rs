@@ -6,12 +6,11 @@ use std::sync::OnceLock;
 use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, wgpu, workgroups_for};
 use downpour_shaders::sim::step_list::{STEP_LIST_CLEAR_KERNEL, STEP_LIST_KERNEL};
 
-use super::list::made_once;
+use super::list::{BoundKernel, made_once};
 use super::simulation::StepBuffers;
 use super::{CollisionMapOnGpu, DropListOnGpu, GpuSimError};
 use crate::field::EyeDrop;
 use crate::plan::Plan;
-use crate::resolved::Resolved;
 use crate::step_list::StepListFrame;
 use crate::view::View;
 
@@ -32,20 +31,6 @@ pub struct StepPicture<'a> {
     pub max_room: u32,
 }
 
-/// A kernel with its bindings and its workgroups.
-#[derive(Debug)]
-struct BoundKernel {
-    kernel: ComputeKernel,
-    bindings: wgpu::BindGroup,
-    groups: [u32; 3],
-}
-
-impl BoundKernel {
-    fn dispatch(&self) -> Dispatch<'_> {
-        self.kernel.dispatch(&self.bindings, self.groups)
-    }
-}
-
 /// The kernels, made when they are first asked for.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StepListKernels {
@@ -56,11 +41,10 @@ pub(super) struct StepListKernels {
 
 /// The list of a picture's drops, ready to be made.
 #[derive(Debug)]
-pub struct StepListPass {
-    clear: BoundKernel,
-    pieces: Vec<BoundKernel>,
+pub struct StepListPass<'a> {
+    clear: BoundKernel<'a>,
+    pieces: Vec<BoundKernel<'a>>,
     list: DropListOnGpu,
-    resolved: Resolved,
 }
 
 impl StepListKernels {
@@ -71,7 +55,7 @@ impl StepListKernels {
         plan: &Plan,
         state: &StepBuffers<'_>,
         picture: &StepPicture<'_>,
-    ) -> Result<StepListPass, GpuSimError> {
+    ) -> Result<StepListPass<'_>, GpuSimError> {
         picture.view.check()?;
         let gpu = buffers.gpu();
         let slots: u32 = state.pieces.iter().map(|piece| piece.count).sum();
@@ -100,13 +84,12 @@ impl StepListKernels {
             let others = [(8, map), (9, texels), (11, &frame), listed, counted];
             let bindings = kernel.bind_at(buffers, of_state.into_iter().chain(others))?;
             let groups = workgroups_for(piece.count);
-            pieces.push(BoundKernel { kernel: kernel.clone(), bindings, groups });
+            pieces.push((kernel, bindings, groups));
         }
         let kernel = made_once(&self.clear, || ComputeKernel::new(gpu, &STEP_LIST_CLEAR_KERNEL, &[]))?;
         let frame = buffers.uniform("step list frame", &frame)?;
         let bindings = kernel.bind_at(buffers, [(6, state.counts), (11, &frame), listed, counted])?;
-        let clear = BoundKernel { kernel: kernel.clone(), bindings, groups: workgroups_for(room) };
-        Ok(StepListPass { clear, pieces, list, resolved: plan.resolved(picture.view) })
+        Ok(StepListPass { clear: (kernel, bindings, workgroups_for(room)), pieces, list })
     }
 }
 
@@ -120,22 +103,18 @@ pub(super) struct StepPiece<'a> {
     pub(super) first: u32,
 }
 
-impl StepListPass {
+impl StepListPass<'_> {
     /// The dispatches in stages, one after another.
     #[must_use]
     pub fn stages(&self) -> [Vec<Dispatch<'_>>; 2] {
-        [vec![self.clear.dispatch()], self.pieces.iter().map(BoundKernel::dispatch).collect()]
+        let (kernel, bindings, groups) = &self.clear;
+        let pieces = self.pieces.iter().map(|(kernel, bindings, groups)| kernel.dispatch(bindings, *groups));
+        [vec![kernel.dispatch(bindings, *groups)], pieces.collect()]
     }
 
     /// The list that they fill.
     #[must_use]
     pub fn list(&self) -> &DropListOnGpu {
         &self.list
-    }
-
-    /// Limits of the list.
-    #[must_use]
-    pub fn resolved(&self) -> &Resolved {
-        &self.resolved
     }
 }

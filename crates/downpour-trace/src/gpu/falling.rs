@@ -27,8 +27,8 @@ pub enum PictureDrops<'a> {
 /// Drops of a picture, ready to be found or listed by the device.
 #[derive(Debug)]
 pub(super) enum FallingPass<'a> {
-    Field(FieldPass<'a>),
-    Stepped(StepListPass),
+    Field(Box<FieldPass<'a>>),
+    Stepped(StepListPass<'a>),
 }
 
 impl FallingPass<'_> {

@@ -210,7 +210,7 @@ impl PictureRenderer {
                 Some((before, of_masks)) => {
                     (before.renewed(pool, scene)?, self.rain.upload_after(masks, Some(&of_masks))?)
                 }
-                None => (SceneOnGpu::first(pool, scene)?, self.rain.upload_after(masks, None)?),
+                None => (SceneOnGpu::new(pool, scene)?, self.rain.upload_after(masks, None)?),
             };
             *last = Some((scene.clone(), masks.clone()));
             drop(last);
@@ -272,7 +272,7 @@ impl PictureRenderer {
             }
             PictureDrops::Field(mut drops) => {
                 let search = drops.prepare(&self.fields, pool, scene, plate.lighting())?;
-                Ok::<_, GpuPictureError>(listed(FallingPass::Field(search)))
+                Ok::<_, GpuPictureError>(listed(FallingPass::Field(Box::new(search))))
             }
             PictureDrops::Stepped(simulation, picture) => {
                 pool.note_written(simulation.take_written());

@@ -118,19 +118,7 @@ impl ScenePipeline {
     /// # Errors
     /// [`GpuError::OverLimit`] if a buffer is larger than the device allows, or what else the GPU says.
     pub fn upload(&self, scene: &SceneData) -> Result<SceneOnGpu, GpuError> {
-        self.upload_after(scene, None)
-    }
-
-    /// Uploads a scene, reusing the buffers that it shares with `before`.
-    ///
-    /// # Errors
-    /// As [`ScenePipeline::upload`].
-    pub fn upload_after(
-        &self,
-        scene: &SceneData,
-        before: Option<&SceneOnGpu>,
-    ) -> Result<SceneOnGpu, GpuError> {
-        SceneOnGpu::new(&self.gpu, scene, before)
+        SceneOnGpu::new(&self.gpu, scene)
     }
 
     /// The picture of a frame: radiance and nearest distance, rows from the top. What
@@ -341,26 +329,11 @@ impl ScenePass<'_> {
 }
 
 impl SceneOnGpu {
-    /// Brings a scene to the device where `before` is already: only what the two do not share.
+    /// Brings a scene to a device.
     ///
     /// # Errors
     /// As [`ScenePipeline::upload`].
-    pub fn new(gpu: &Gpu, scene: &SceneData, before: Option<&Self>) -> Result<Self, GpuError> {
-        let is_same = |before: &&Self| {
-            before.of.table == scene.table && before.of.ripples.is_none() && scene.ripples.is_none()
-        };
-        let table = match before.filter(is_same) {
-            Some(before) => before.table.clone(),
-            None => table_of(gpu, scene)?,
-        };
-        Self::with_table(gpu, scene, before, table)
-    }
-
-    /// Brings a scene to a device that has none yet, and counts what is written.
-    ///
-    /// # Errors
-    /// As [`ScenePipeline::upload`].
-    pub(super) fn first(buffers: &impl BufferSource, scene: &SceneData) -> Result<Self, GpuError> {
+    pub fn new(buffers: &impl BufferSource, scene: &SceneData) -> Result<Self, GpuError> {
         Self::with_table(buffers, scene, None, table_of(buffers, scene)?)
     }
 
