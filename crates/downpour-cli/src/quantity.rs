@@ -192,6 +192,11 @@ pub(crate) fn sky_rays(text: &str) -> Result<u32, String> {
     whole(text, 0..=64)
 }
 
+/// Pixels between those whose rays look for light.
+pub(crate) fn ray_spacing(text: &str) -> Result<u32, String> {
+    whole(text, 1..=4)
+}
+
 /// Seed of random numbers.
 pub(crate) fn seed(text: &str) -> Result<u64, String> {
     text.parse().map_err(|_| format!("allowed: a whole number from 0 to {}", u64::MAX))
@@ -308,6 +313,7 @@ mod tests {
     #[test]
     fn whole_numbers_are_whole() {
         assert_eq!((samples("1"), samples("8"), sky_rays("0")), (Ok(1), Ok(8), Ok(0)));
+        assert!(ray_spacing("4") == Ok(4) && ray_spacing("0").is_err() && ray_spacing("5").is_err());
         assert_eq!(seed("18446744073709551615"), Ok(u64::MAX));
         for text in ["0", "9", "-1", "2.0", "", "nan", "99999999999"] {
             assert_eq!(samples(text), Err("allowed: a whole number from 1 to 8".to_owned()), "{text}");

@@ -110,7 +110,16 @@ impl FramePasses {
     /// # Errors
     /// As [`FramePasses::run`].
     pub fn run_each(&mut self, name: &'static str, dispatches: &[Dispatch<'_>]) -> Result<(), GpuError> {
-        let stages: Vec<[&[Dispatch<'_>]; 1]> = dispatches.chunks(1).map(|one| [one]).collect();
+        self.run_batches(name, &dispatches.iter().map(|one| vec![*one]).collect::<Vec<_>>())
+    }
+
+    /// Submits a pass, each batch of dispatches by itself. Those of a batch do not wait for one another, where they write different
+    /// buffers.
+    ///
+    /// # Errors
+    /// As [`FramePasses::run`].
+    pub fn run_batches(&mut self, name: &'static str, batches: &[Vec<Dispatch<'_>>]) -> Result<(), GpuError> {
+        let stages: Vec<[&[Dispatch<'_>]; 1]> = batches.iter().map(|batch| [batch.as_slice()]).collect();
         let parts: Vec<&[&[Dispatch<'_>]]> = stages.iter().map(<[_; 1]>::as_slice).collect();
         self.run_parts(name, &parts, true)
     }

@@ -34,6 +34,9 @@ pub struct PictureOptions {
     pub grid: u32,
     /// Rays to the sky per sample; 0: nothing hides the sky.
     pub sky_rays: u32,
+    /// Distance in pixels between those whose rays look for the light of sky and surfaces, which the pixels between take from them: 1 to
+    /// 4; 1: all do.
+    pub ray_spacing: u32,
     /// Seed of the rays: [`noise_seed`] for the frames of a clip.
     pub seed: u64,
     /// Options of the drawing of drops.
@@ -49,6 +52,7 @@ impl Default for PictureOptions {
             size: [1280, 720],
             grid: 2,
             sky_rays: 1,
+            ray_spacing: 1,
             seed: 0,
             rain: RainOptions::default(),
             glow: Glow::default(),

@@ -1,5 +1,7 @@
 //! The environment of the eye, traced by rays. Twin of `shaders/wgsl/render/capture.wgsl`.
 
+use std::ops::Range;
+
 use downpour_math::packing::{packing_octahedral_decode, packing_octahedral_encode};
 use downpour_render::camera::Camera;
 use downpour_render::rain::{EnvironmentFrame, EnvironmentMap, RefractionForm};
@@ -43,6 +45,10 @@ pub fn environment_frame(picture: &RenderFrame, environment: &EnvironmentFrame) 
         ray_fraction: 1.0 / (LOOKUP_TEXELS * sky_rays.max(1) as f32),
         first_row: 0,
         projection,
+        // No filter here, either.
+        ray_spacing: 1,
+        ray_column: 0,
+        ray_row: 0,
         ..*picture
     }
 }
@@ -54,14 +60,23 @@ pub fn trace_environment(
     picture: &RenderFrame,
     environment: &EnvironmentFrame,
 ) -> EnvironmentMap {
+    let texels = trace_environment_rows(data, picture, environment, 0..environment.size);
+    EnvironmentMap::new(environment, texels)
+}
+
+/// Traces rows of the finest level of the environment of a picture's eye on the CPU.
+pub(crate) fn trace_environment_rows(
+    data: &SceneData,
+    picture: &RenderFrame,
+    environment: &EnvironmentFrame,
+    rows: Range<u32>,
+) -> Vec<[f32; 4]> {
     let frame = environment_frame(picture, environment);
     let view = &SceneView { data, frame: &frame };
     let size = frame.camera.width;
-    let texels = (0..size)
-        .into_par_iter()
+    rows.into_par_iter()
         .flat_map_iter(|y| (0..size).map(move |x| view.trace_pixel(x, y).0.to_array()))
-        .collect();
-    EnvironmentMap::new(environment, texels)
+        .collect()
 }
 
 /// The direction of a position of the map, in texels from the top left.

@@ -6,6 +6,7 @@
 use std::sync::Arc;
 
 use downpour_bvh::{BvhNode, BvhTriangle};
+use downpour_math::rng::rng_draw;
 use downpour_render::RenderError;
 use downpour_render::camera::{Camera, Viewpoint};
 use downpour_render::light::{Light, LightSource};
@@ -17,6 +18,12 @@ use glam::Vec3;
 
 /// Part of the pixels over which the filter takes means that one is.
 const WINDOW_FRACTION: f32 = 1.0 / ((2 * SKYLIGHT_RADIUS + 1) * (2 * SKYLIGHT_RADIUS + 1)) as f32;
+
+/// Largest distance in pixels between those whose rays look for the light of sky and surfaces: [`RenderFrame::ray_spacing`].
+pub const MAX_RAY_SPACING: u32 = 4;
+
+/// Dimension of the random number of the pixel in each cell that looks for light.
+const SPACING_DIMENSION: u32 = 4133;
 
 /// A corner of a triangle. The same layout as `RenderCorner` in WGSL.
 #[repr(C)]
@@ -72,6 +79,15 @@ pub struct RenderFrame {
     pub wetness: u32,
     /// Word of the texels where the tree of surfaces that shine begins; 0: none shine.
     pub emitters: u32,
+    /// In the picture, distance in pixels between those whose rays look for the light of sky and surfaces: 1 to [`MAX_RAY_SPACING`];
+    /// 1: all do.
+    pub ray_spacing: u32,
+    /// Column of such a pixel in each cell of `ray_spacing` times `ray_spacing` pixels.
+    pub ray_column: u32,
+    /// Its row.
+    pub ray_row: u32,
+    /// Unused.
+    pub unused: u32,
     /// Width, height and first texel of each level of the sky.
     pub sky_levels: [[u32; 4]; SCENE_SKY_LEVELS as usize],
     /// Irradiance of the sky over pi as spherical harmonics of degree 2.
@@ -243,8 +259,30 @@ impl RenderFrame {
             turn: 0,
             wetness: scene.wetness,
             emitters: scene.emitters,
+            ray_spacing: 1,
+            ray_column: 0,
+            ray_row: 0,
+            unused: 0,
             sky_levels: scene.sky_levels,
             sky_irradiance: scene.sky_irradiance,
         })
+    }
+
+    /// The frame in which rays of one pixel in each cell of `spacing` times `spacing` pixels look for the light of sky and surfaces, for all
+    /// of them. Which pixel it is changes with the frame's seed. `spacing` is limited to 1 to [`MAX_RAY_SPACING`].
+    #[must_use]
+    pub fn with_ray_spacing(self, spacing: u32) -> Self {
+        let spacing = spacing.clamp(1, MAX_RAY_SPACING);
+        let place = rng_draw([self.camera.seed, 0], 0, 0, SPACING_DIMENSION)[0] % (spacing * spacing);
+        // A ray stands for all of its cell.
+        let alone = 1.0 / self.sky_rays.max(1) as f32;
+        let ray_fraction = (WINDOW_FRACTION * alone * (spacing * spacing) as f32).min(alone);
+        Self {
+            ray_spacing: spacing,
+            ray_column: place % spacing,
+            ray_row: place / spacing,
+            ray_fraction,
+            ..self
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! A plate that stays from picture to picture: while neither the scene nor the eye changes, its picture is refined by one more frame of
+//! A picture of a scene that stays from picture to picture: while neither the scene nor the eye changes, it is refined by one more frame of
 //! rays each time, up to a number of frames, and then costs nothing.
 //!
 //! What moves the scene's light by less than an eye can tell does not count: surfaces that get wetter step by step.
@@ -7,7 +7,6 @@ use std::sync::Arc;
 
 use downpour_math::rng::rng_draw;
 use downpour_render::camera::Camera;
-use downpour_render::rain::EnvironmentFrame;
 use downpour_render::refine::{refine_shift, shifted};
 
 use crate::data::{RenderFrame, SceneData};
@@ -22,31 +21,30 @@ const MIN_WETTING: f32 = 1.0 / 128.0;
 /// Fluxes of rain that surfaces meet, for which wetness is compared.
 const FLUXES: [f32; 3] = [1.0, 0.2, 0.04];
 
-/// A plate with what it shows; `T` holds its picture and its environment map.
+/// A picture of a scene with what it shows; `T` holds its pixels.
 #[derive(Clone, Debug)]
 pub struct KeptPlate<T> {
     scene: SceneData,
     frame: RenderFrame,
-    environment: EnvironmentFrame,
     /// Frames that its picture is the mean of.
     count: u32,
-    /// Picture and environment map.
+    /// Its pixels.
     pub held: T,
 }
 
 impl<T> KeptPlate<T> {
     /// Begins a plate of a scene, of which no frame is taken yet.
     #[must_use]
-    pub fn new(scene: &SceneData, frame: &RenderFrame, environment: &EnvironmentFrame, held: T) -> Self {
-        Self { scene: scene.clone(), frame: seedless(frame), environment: *environment, count: 0, held }
+    pub fn new(scene: &SceneData, frame: &RenderFrame, held: T) -> Self {
+        Self { scene: scene.clone(), frame: seedless(frame), count: 0, held }
     }
 
     /// True if a frame of a scene shows the same.
     #[must_use]
-    pub fn shows(&self, scene: &SceneData, frame: &RenderFrame, environment: &EnvironmentFrame) -> bool {
+    pub fn shows(&self, scene: &SceneData, frame: &RenderFrame) -> bool {
         bytemuck::bytes_of(&self.frame) == bytemuck::bytes_of(&seedless(frame))
-            && self.environment == *environment
-            && shows_alike(&self.scene, scene)
+            && has_ripples_alike(&self.scene, scene)
+            && is_lit_alike(&self.scene, scene)
     }
 
     /// Number of frames that its picture is the mean of.
@@ -72,25 +70,34 @@ fn refined_frame(frame: &RenderFrame, count: u32) -> RenderFrame {
     }
     let camera = shifted(&frame.camera, refine_shift(count));
     let seed = rng_draw([frame.camera.seed, 0], count, 0, SEED_DIMENSION)[0];
-    RenderFrame { camera: Camera { seed, ..camera }, ..*frame }
+    // What stands still is worth the rays of all pixels.
+    RenderFrame { camera: Camera { seed, ..camera }, ..*frame }.with_ray_spacing(1)
 }
 
+/// The frame without what differs between the frames that refine a plate.
 fn seedless(frame: &RenderFrame) -> RenderFrame {
-    RenderFrame { camera: Camera { seed: 0, ..frame.camera }, ..*frame }
+    RenderFrame { camera: Camera { seed: 0, ..frame.camera }, ..*frame }.with_ray_spacing(1)
 }
 
-/// True if two scenes show the same: what they share is the same memory, ripples on a device are of one step, and their tables are equal
-/// but for a wetness that nobody can tell.
-fn shows_alike(before: &SceneData, scene: &SceneData) -> bool {
+/// True if ripples on a device are of one step.
+#[cfg(feature = "wgpu")]
+fn has_ripples_alike(before: &SceneData, scene: &SceneData) -> bool {
+    before.ripples == scene.ripples
+}
+
+#[cfg(not(feature = "wgpu"))]
+fn has_ripples_alike(_: &SceneData, _: &SceneData) -> bool {
+    true
+}
+
+/// True if two scenes are lit alike: what they share is the same memory, and their tables are equal but for a wetness that nobody can
+/// tell. Ripples on a device are not looked at.
+pub(crate) fn is_lit_alike(before: &SceneData, scene: &SceneData) -> bool {
     let shares = Arc::ptr_eq(&before.nodes, &scene.nodes)
         && Arc::ptr_eq(&before.triangles, &scene.triangles)
         && Arc::ptr_eq(&before.corners, &scene.corners)
         && Arc::ptr_eq(&before.texels, &scene.texels)
         && Arc::ptr_eq(&before.sky, &scene.sky);
-    #[cfg(feature = "wgpu")]
-    if before.ripples != scene.ripples {
-        return false;
-    }
     let rows = |scene: &SceneData| {
         let wet = scene.wetness as usize;
         let skipped = if wet > 0 { wet..wet + WET_ROWS_THAT_CHANGE } else { 0..0 };
@@ -118,7 +125,6 @@ fn shows_alike(before: &SceneData, scene: &SceneData) -> bool {
 mod tests {
     use super::*;
     use downpour_render::camera::Viewpoint;
-    use downpour_render::rain::RainOptions;
     use glam::Vec3;
 
     use crate::builder::SceneBuilder;
@@ -141,12 +147,11 @@ mod tests {
     fn a_plate_is_kept_while_it_shows_the_same() {
         let scene = SceneBuilder::new().build(&SkyLight::uniform([1.0; 3]));
         let frame = frame_of(&scene, Vec3::ZERO, 1);
-        let layout = EnvironmentFrame::new(&frame.camera, &RainOptions::default());
-        let mut plate = KeptPlate::new(&scene, &frame, &layout, ());
-        assert!(plate.shows(&scene, &frame_of(&scene, Vec3::ZERO, 2), &layout));
-        assert!(!plate.shows(&scene, &frame_of(&scene, Vec3::X, 1), &layout));
+        let mut plate = KeptPlate::new(&scene, &frame, ());
+        assert!(plate.shows(&scene, &frame_of(&scene, Vec3::ZERO, 2)));
+        assert!(!plate.shows(&scene, &frame_of(&scene, Vec3::X, 1)));
         let other = SceneBuilder::new().build(&SkyLight::uniform([2.0; 3]));
-        assert!(!plate.shows(&other, &frame, &layout));
+        assert!(!plate.shows(&other, &frame));
         // The first frame is that of a picture by itself, the others are seen from it by other rays.
         let (first, count) = plate.next(&frame, 3).expect("a first frame");
         assert_eq!((first.camera, count), (frame.camera, 1));
@@ -163,15 +168,14 @@ mod tests {
         let mut scene = SceneBuilder::new().build(&SkyLight::uniform([1.0; 3]));
         wet(&mut scene, 1.0);
         let frame = frame_of(&scene, Vec3::ZERO, 1);
-        let layout = EnvironmentFrame::new(&frame.camera, &RainOptions::default());
-        let plate = KeptPlate::new(&scene, &frame, &layout, ());
+        let plate = KeptPlate::new(&scene, &frame, ());
         let mut later = scene.clone();
         wet(&mut later, 1.005);
-        assert!(plate.shows(&later, &frame, &layout));
+        assert!(plate.shows(&later, &frame));
         wet(&mut later, 1.2);
-        assert!(!plate.shows(&later, &frame, &layout));
+        assert!(!plate.shows(&later, &frame));
         wet(&mut later, 1.0);
         *later.table.last_mut().expect("a row") = [7; 4];
-        assert!(!plate.shows(&later, &frame, &layout));
+        assert!(!plate.shows(&later, &frame));
     }
 }

@@ -33,6 +33,7 @@ pub mod frame_scene;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
 pub mod kept;
+pub mod kept_environment;
 pub mod material;
 pub mod pane_shadow;
 #[cfg(not(feature = "parity"))]

@@ -87,6 +87,8 @@ pub(crate) struct PathSlot {
     pub(crate) roughness: f32,
     /// The surface's normal; of a gloss, the direction that a mirror would show.
     pub(crate) normal: Vec3,
+    /// True if no ray has looked for the light: it is that of the open sky.
+    pub(crate) guessed: bool,
     pub(crate) position: Vec3,
 }
 
@@ -98,6 +100,7 @@ impl PathSlot {
         factor: Vec3::ZERO,
         roughness: 0.0,
         normal: Vec3::ZERO,
+        guessed: false,
         position: Vec3::ZERO,
     };
 }
@@ -223,7 +226,8 @@ fn path_mirrored(surface: &Surface, towards: Vec3) -> Vec3 {
 }
 
 impl SceneView<'_> {
-    /// Traces a ray of the camera. If it meets the surface that `last` met, it sees the same.
+    /// Traces a ray of the camera. If it meets the surface that `last` met, it sees the same. `spared`: light of which means are taken
+    /// over neighboring pixels is left to their rays.
     pub(crate) fn path_trace(
         &self,
         origin: Vec3,
@@ -231,6 +235,7 @@ impl SceneView<'_> {
         cone: f32,
         random: [u32; 4],
         last: &ViewPath,
+        spared: bool,
     ) -> ViewPath {
         let (frame, data) = (self.frame, self.data);
         let mut path = ViewPath::NOTHING;
@@ -293,6 +298,7 @@ impl SceneView<'_> {
                 path.position = found.position;
             }
             near = hit.distance + frame.nearest;
+            let told = path.base.slack == 0.0 && path_cover(&found) == 1.0 && found.transmission == 0.0;
             let unlit = found.flags & SCENE_UNLIT != 0;
             let (mut direct, mut glow, mut is_soft, mut relief) = (found.diffuse, Vec3::ZERO, false, 1.0);
             if !unlit {
@@ -304,7 +310,8 @@ impl SceneView<'_> {
                 let [x, y, z, w] = path_lattice_numbers(random, 0, 0, 0, 1);
                 let numbers = [x, y, (w + z * PATH_BETWEEN).fract(), z];
                 let footprint = Some(cone * hit.distance);
-                let asked = SceneAsked { draws: 0, numbers, standoff: 0.0, under: depth, footprint };
+                let spared = spared && told;
+                let asked = SceneAsked { draws: 0, numbers, standoff: 0.0, under: depth, footprint, spared };
                 let lamplight = self.scene_direct(&found, -towards, &asked);
                 direct = if left_out { Vec3::ZERO } else { found.emission } + lamplight.lit;
                 // What is told apart goes with the rest of the light on the diffuse base, which has the material's occlusion.
@@ -312,7 +319,6 @@ impl SceneView<'_> {
                 let rest = light_weight(data.sky_irradiance(found.normal)).max(1.0e-9);
                 relief = (rest + lamplight.relief_light) / (rest + lamplight.flat_light);
             }
-            let told = path.base.slack == 0.0 && path_cover(&found) == 1.0 && found.transmission == 0.0;
             let free = path.mirror.slack == 0.0;
             let mut plan = PathPlan::NONE;
             if let (Some(_), Some(water)) = (met, &water) {
@@ -330,6 +336,9 @@ impl SceneView<'_> {
                 };
             } else if !unlit {
                 plan = self.path_plan(&found, -towards, cone * hit.distance, told, free && !under);
+                if spared && told && frame.sky_rays > 0 {
+                    plan = plan.path_spared();
+                }
             }
             // Neighboring pixels are on one plane if they are no farther from it than this.
             let from_eye = found.position - origin;
@@ -457,6 +466,7 @@ impl SceneView<'_> {
                         standoff,
                         under: Vec2::ZERO,
                         footprint: None,
+                        spared: false,
                     };
                     lit = self.scene_direct(&found, -ray.along, &asked).lit;
                 }
@@ -483,6 +493,10 @@ impl SceneView<'_> {
                         light.distance = hit.distance;
                         light.normal = found.normal;
                         light.position = found.position;
+                        if plan.spared {
+                            light.shown = data.sky_irradiance(found.normal);
+                            break;
+                        }
                     }
                 } else if bounce + 1 == PATH_BOUNCES {
                     ambient = self.path_ambient(&found, (given + lit) / (bounce + 1) as f32);
@@ -559,14 +573,21 @@ impl SceneView<'_> {
         let of_gloss = if plan.chance > 0.0 { plan.rays } else { plan.mirrors };
         let mut base = light.base / plan.rays.max(1) as f32 + glow;
         let mut mirror = light.mirror / of_gloss.max(1) as f32;
+        let in_mirror = || self.data.sky_cone(mirrored, scatter_mirror(&surface, -towards).width);
+        if plan.spared {
+            base = self.data.sky_irradiance(surface.normal) + glow;
+            if plan.kept {
+                mirror = in_mirror();
+            }
+        }
         if surface.roughness >= PATH_SHINES {
             // The widest lobes see of what shines about what the diffuse base sees.
             mirror += glow;
         }
-        if plan.mirrors + plan.rays == 0 {
+        if plan.mirrors + plan.rays == 0 && !plan.spared {
             base = self.data.sky_irradiance(surface.normal) + glow;
-            mirror = self.data.sky_cone(mirrored, scatter_mirror(&surface, -towards).width);
-        } else if plan.mirrors == 0 && plan.chance == 0.0 {
+            mirror = in_mirror();
+        } else if plan.mirrors == 0 && plan.chance == 0.0 && !(plan.spared && plan.kept) {
             // Too faint to trace rays for it.
             base -= glow * plan.gloss / (plan.body + plan.gloss).max(Vec3::splat(1.0e-9));
             plan.body += plan.gloss;
@@ -574,10 +595,10 @@ impl SceneView<'_> {
         }
         let of_base = throughput * plan.body * (cover * relief);
         let of_gloss = throughput * plan.gloss * cover;
-        let slot = PathSlot { slack, position: surface.position, ..PathSlot::NONE };
+        let slot = PathSlot { slack, position: surface.position, guessed: plan.spared, ..PathSlot::NONE };
         if told {
             path.base = PathSlot { light: base, factor: of_base, normal: surface.normal, ..slot };
-            let mirrors = plan.mirrors > 0
+            let mirrors = (plan.mirrors > 0 || plan.spared && path_max(plan.body) <= 0.0)
                 && (surface.roughness < PATH_CURVED || !plan.kept)
                 && path_max(plan.gloss) > PATH_PLAIN_GLOSS;
             path.plain = !(mirrors || layer > 0 || is_soft);
@@ -606,6 +627,7 @@ impl ViewPath {
             slack: meeting.slack + light.distance * (2.0 * meeting.plan.spread + SKYLIGHT_SLACK),
             roughness: 0.0,
             normal: light.normal,
+            guessed: meeting.plan.spared,
             position: light.position,
         };
     }
@@ -629,6 +651,7 @@ impl ViewPath {
                 slack: meeting.slack,
                 roughness: surface.roughness,
                 normal: path_mirrored(surface, towards),
+                guessed: false,
                 position: surface.position,
             };
         } else {

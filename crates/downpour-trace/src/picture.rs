@@ -3,19 +3,22 @@
 //! [`render_picture`] makes it on the CPU, [`gpu::PictureRenderer`](crate::gpu::PictureRenderer) on a GPU: the same
 //! passes over the same buffers.
 
+use std::ops::Range;
+
 use downpour_render::RenderError;
 use downpour_render::camera::Viewpoint;
 use downpour_render::glow::Glow;
 use downpour_render::picture::{Picture, PictureOptions, rain_layer, timed};
 use downpour_render::plate::Plate;
 use downpour_render::rain::light::DropLightForm;
-use downpour_render::rain::{DropMasks, EnvironmentMap, Rain};
+use downpour_render::rain::{DropMasks, EnvironmentFrame, EnvironmentMap, Rain};
 use downpour_render::refine::refine_pixel;
 use downpour_sim::field::FallingDrop;
 
-use crate::capture::trace_environment;
+use crate::capture::trace_environment_rows;
 use crate::data::{RenderFrame, SceneData};
 use crate::kept::KeptPlate;
+use crate::kept_environment::KeptEnvironment;
 use crate::scene::SceneView;
 
 /// The frame of a picture.
@@ -31,16 +34,16 @@ pub fn picture_frame(
         RenderFrame::new(scene, viewpoint, options.size, options.grid, options.sky_rays, options.seed)?;
     // What is worked out drop by drop is not in the environment too.
     let traced = matches!(options.rain.light.form, DropLightForm::Traced | DropLightForm::Atlas);
-    Ok(RenderFrame { suns_out: u32::from(traced), ..frame })
+    Ok(RenderFrame { suns_out: u32::from(traced), ..frame }.with_ray_spacing(options.ray_spacing))
 }
 
-/// Picture of a scene without rain, and what is around its eye, traced on the CPU.
-#[derive(Clone, Debug)]
-pub struct TracedPlate {
+/// What of a scene stays on the CPU from picture to picture.
+#[derive(Clone, Debug, Default)]
+pub struct KeptScene {
     /// Radiance and distance of each pixel.
-    pub clean: Vec<[f32; 4]>,
+    pub plate: Option<KeptPlate<Vec<[f32; 4]>>>,
     /// Environment map of the eye.
-    pub environment: EnvironmentMap,
+    pub environment: Option<KeptEnvironment<EnvironmentMap>>,
 }
 
 /// Renders a picture on the CPU. The bits do not depend on the number of threads.
@@ -54,16 +57,16 @@ pub fn render_picture(
     masks: &DropMasks,
     options: &PictureOptions,
 ) -> Result<Picture, RenderError> {
-    render_picture_on(&mut None, 1, scene, viewpoint, drops, masks, options)
+    render_picture_on(&mut KeptScene::default(), 1, scene, viewpoint, drops, masks, options)
 }
 
-/// The same over the plate of the last picture, if it shows the same: [`KeptPlate`]. It is refined by a frame of rays for each picture, up to
-/// `max_frames`.
+/// The same over what the last picture has left, as far as it shows the same: [`KeptPlate`], [`KeptEnvironment`]. The plate is refined by a
+/// frame of rays for each picture, up to `max_frames`.
 ///
 /// # Errors
 /// As [`render_picture`].
 pub fn render_picture_on(
-    kept: &mut Option<KeptPlate<TracedPlate>>,
+    kept: &mut KeptScene,
     max_frames: u32,
     scene: &SceneData,
     viewpoint: &Viewpoint,
@@ -77,23 +80,27 @@ pub fn render_picture_on(
     let view = SceneView { data: scene, frame: &frame };
     let eye = viewpoint.eye.as_dvec3();
     let rain = timed(&mut passes, "binning", || Rain::new(&camera, eye, drops, masks, &options.rain));
-    let plate = kept.take().filter(|plate| plate.shows(scene, &frame, &rain.environment));
-    let plate = kept.insert(plate.unwrap_or_else(|| {
-        let environment =
-            timed(&mut passes, "capture", || trace_environment(scene, &frame, &rain.environment));
-        let held = TracedPlate { clean: Vec::new(), environment };
-        KeptPlate::new(scene, &frame, &rain.environment, held)
+    let map = kept.environment.take().filter(|map| map.fits(scene, &frame, &rain.environment));
+    let map = kept.environment.insert(map.unwrap_or_else(|| {
+        let held = EnvironmentMap { texels: Vec::new() };
+        KeptEnvironment::new(scene, &frame, &rain.environment, held)
     }));
+    let rows = map.next(camera.eye);
+    if !rows.is_empty() {
+        timed(&mut passes, "capture", || trace_rows(&mut map.held, scene, &frame, &rain.environment, rows));
+    }
+    let plate = kept.plate.take().filter(|plate| plate.shows(scene, &frame));
+    let plate = kept.plate.insert(plate.unwrap_or_else(|| KeptPlate::new(scene, &frame, Vec::new())));
     if let Some((refined, count)) = plate.next(&frame, max_frames) {
         let next = timed(&mut passes, "scene", || SceneView { data: scene, frame: &refined }.picture());
         if count == 1 {
-            plate.held.clean = next;
+            plate.held = next;
         } else {
-            let pixels = plate.held.clean.iter_mut().zip(next);
+            let pixels = plate.held.iter_mut().zip(next);
             pixels.for_each(|(mean, next)| *mean = refine_pixel(*mean, next, count));
         }
     }
-    let TracedPlate { clean, environment } = &plate.held;
+    let (clean, environment) = (&plate.held, &map.held);
     let plate = Plate { camera: &camera, pixels: clean, environment, lighting: &view };
     let layer = rain_layer(&plate, &rain, masks, &mut passes)?;
     let mut picture = Picture::new(&rain, clean.clone(), layer, environment.texels.clone(), passes);
@@ -103,4 +110,22 @@ pub fn render_picture_on(
         picture.passes.push(("glow", start.elapsed().as_secs_f64() * 1.0e3));
     }
     Ok(picture)
+}
+
+/// Traces rows of an environment map, and makes its coarser levels of them and of those that are there.
+fn trace_rows(
+    map: &mut EnvironmentMap,
+    scene: &SceneData,
+    frame: &RenderFrame,
+    environment: &EnvironmentFrame,
+    rows: Vec<Range<u32>>,
+) {
+    let size = environment.size as usize;
+    let mut finest = std::mem::take(&mut map.texels);
+    finest.resize(size * size, [0.0; 4]);
+    for rows in rows {
+        let place = rows.start as usize * size..rows.end as usize * size;
+        finest[place].copy_from_slice(&trace_environment_rows(scene, frame, environment, rows));
+    }
+    *map = EnvironmentMap::new(environment, finest);
 }

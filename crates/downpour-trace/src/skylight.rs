@@ -7,12 +7,15 @@
 //! at the sides: what one pixel has found is spread by one hat in the end, 32 pixels to each side, without edges or overlaps.
 //!
 //! A neighbor counts as far as its normal agrees and as it is on the plane through the pixel's position; in the gloss, as far
-//! as it mirrors the same direction, within the lobe.
+//! as it mirrors the same direction, within the lobe. Pixels whose rays have not looked for light ([`RenderFrame::ray_spacing`]) count
+//! next to nothing: what they show is what others have found, or the open sky where no other shows their surface.
+//!
+//! [`RenderFrame::ray_spacing`]: crate::data::RenderFrame::ray_spacing
 
 use downpour_math::color::color_luminance;
 use downpour_shaders::render::scene::{
-    SKYLIGHT_FILM, SKYLIGHT_FILM_EDGE, SKYLIGHT_LOBE, SKYLIGHT_NOISE, SKYLIGHT_PASSES, SKYLIGHT_RADIUS,
-    SKYLIGHT_STEP,
+    SKYLIGHT_FILM, SKYLIGHT_FILM_EDGE, SKYLIGHT_GUESSED, SKYLIGHT_LOBE, SKYLIGHT_LOOSE,
+    SKYLIGHT_LOOSE_ROUGHNESS, SKYLIGHT_NOISE, SKYLIGHT_PASSES, SKYLIGHT_RADIUS, SKYLIGHT_STEP,
 };
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
@@ -39,6 +42,8 @@ struct SkylightSlot {
     position: Vec3,
     slack: f32,
     roughness: f32,
+    /// Of its light.
+    weight: f32,
 }
 
 /// Agreement of two mirrored directions within the lobe of a roughness: 1 for the same direction, at least 0.
@@ -75,6 +80,17 @@ fn skylight_same(own: &SkylightSlot, other: &SkylightSlot, wet: bool) -> f32 {
     let agrees = cosine.max(0.0);
     let fourth = agrees * agrees * agrees * agrees;
     fourth * fourth * near
+}
+
+/// Weight of a pixel in the mean of another: [`skylight_same`]. If no ray has looked for the light of that one, any surface is better than
+/// none, and best is one that faces or mirrors the same way.
+fn skylight_near(own: &SkylightSlot, other: &SkylightSlot, wet: bool) -> f32 {
+    let same = skylight_same(own, other, wet);
+    if own.weight >= 1.0 || other.slack <= 0.0 || (own.roughness > 0.0) != (other.roughness > 0.0) {
+        return same;
+    }
+    let alike = skylight_lobe(own.direction.dot(other.direction), SKYLIGHT_LOOSE_ROUGHNESS);
+    same.max(SKYLIGHT_LOOSE * alike.max(SKYLIGHT_LOOSE))
 }
 
 /// Similarity of two means given their noise, 0 to 1: variances are those of the means.
@@ -123,7 +139,8 @@ impl SceneView<'_> {
 
 /// A slot, unpacked.
 fn skylight_slot(slot: &TraceSlot, eye: Vec3) -> SkylightSlot {
-    let PathSlot { light, slack, factor, roughness, normal: direction, position } = trace_unpack(slot, eye);
+    let PathSlot { light, slack, factor, roughness, normal: direction, guessed, position } =
+        trace_unpack(slot, eye);
     let mut normal = direction;
     if roughness > 0.0 {
         // Between what is seen and what is mirrored.
@@ -131,7 +148,8 @@ fn skylight_slot(slot: &TraceSlot, eye: Vec3) -> SkylightSlot {
         let sum = direction - seen / seen.dot(seen).sqrt().max(1.0e-20);
         normal = sum / sum.dot(sum).sqrt().max(1.0e-20);
     }
-    SkylightSlot { light, factor, normal, direction, position, slack, roughness }
+    let weight = if guessed { SKYLIGHT_GUESSED } else { 1.0 };
+    SkylightSlot { light, factor, normal, direction, position, slack, roughness, weight }
 }
 
 impl Pixels<'_> {
@@ -148,9 +166,10 @@ impl Pixels<'_> {
         for row in around(y, self.height) {
             for column in around(x, self.width) {
                 let other = index(column, row);
-                let mut counts = skylight_hat(x, column) * skylight_hat(y, row);
+                let mut counts =
+                    skylight_hat(x, column) * skylight_hat(y, row) * self.slots[other][slot].weight;
                 if row != y || column != x {
-                    counts *= skylight_same(own, &self.slots[other][slot], self.wet);
+                    counts *= skylight_near(own, &self.slots[other][slot], self.wet);
                 }
                 if counts > 0.0 {
                     let light = self.slots[other][slot].light;

@@ -27,7 +27,8 @@ pub struct TraceSlot {
     pub position: [f32; 3],
     /// The surface's normal; of a gloss, the direction that a mirror would show. Octahedral, 16 bits each.
     pub normal: u32,
-    /// Sum of the light's red, green and blue: the mean of the samples that have found some.
+    /// Sum of the light's red, green and blue: the mean of the samples that have found some. Below zero if it is guessed: no ray has
+    /// looked for it.
     pub light: f32,
     /// Fractions of it that are red and green, 12 bits each, and the roughness of a gloss, 8 bits; 0: a diffuse base.
     pub look: u32,
@@ -65,7 +66,7 @@ fn trace_pack(slot: &PathSlot, eye: Vec3) -> TraceSlot {
     TraceSlot {
         position: slot.position.to_array(),
         normal: packing_pack_snorm(packing_octahedral_encode(slot.normal.to_array())),
-        light: sum,
+        light: if slot.guessed { -sum.max(1.0e-30) } else { sum },
         look: part(slot.light.x) | part(slot.light.y) << 12 | rough << 24,
         factor: [packing_pack_half([factor.x, factor.y]), packing_pack_half([factor.z, slack])],
     }
@@ -73,17 +74,19 @@ fn trace_pack(slot: &PathSlot, eye: Vec3) -> TraceSlot {
 
 /// A slot as it was before it was packed.
 pub(crate) fn trace_unpack(slot: &TraceSlot, eye: Vec3) -> PathSlot {
-    let red = (slot.look & 4095) as f32 * (slot.light / 4095.0);
-    let green = (slot.look >> 12 & 4095) as f32 * (slot.light / 4095.0);
+    let sum = slot.light.abs();
+    let red = (slot.look & 4095) as f32 * (sum / 4095.0);
+    let green = (slot.look >> 12 & 4095) as f32 * (sum / 4095.0);
     let [low, high] = slot.factor.map(packing_unpack_half);
     let position = Vec3::from(slot.position);
     let from_eye = position - eye;
     PathSlot {
-        light: Vec3::new(red, green, (slot.light - red - green).max(0.0)),
+        light: Vec3::new(red, green, (sum - red - green).max(0.0)),
         slack: high[1] * from_eye.dot(from_eye).sqrt(),
         factor: Vec3::new(low[0], low[1], high[0]),
         roughness: (slot.look >> 24) as f32 / 255.0,
         normal: Vec3::from(packing_octahedral_decode(packing_unpack_snorm(slot.normal))),
+        guessed: slot.light < 0.0,
         position,
     }
 }
@@ -180,6 +183,12 @@ impl SceneView<'_> {
         self.frame.camera.camera_direction(x, y)
     }
 
+    /// True if rays of a pixel look for the light of sky and surfaces; else those of its neighbors do for it.
+    fn trace_gathers(&self, x: u32, y: u32) -> bool {
+        let RenderFrame { ray_spacing, ray_column, ray_row, .. } = *self.frame;
+        x % ray_spacing == ray_column && y % ray_spacing == ray_row
+    }
+
     /// A texel of the capture: the mean of what its samples have found, where the sky is that of all directions in it, and the
     /// suns.
     fn trace_captured(&self, mean: Vec3, nearest: f32, x: u32, y: u32) -> Vec3 {
@@ -205,7 +214,8 @@ impl SceneView<'_> {
         let direction = self.trace_direction(x as f32 + dx, y as f32 + dy);
         let random = path_lattice_words(self.frame.camera.seed, x, y, index);
         let camera = &self.frame.camera;
-        let path = self.path_trace(camera.eye, direction, camera.pixel_angle, random, &state.last);
+        let spared = !self.trace_gathers(x, y);
+        let path = self.path_trace(camera.eye, direction, camera.pixel_angle, random, &state.last, spared);
         let is_picture = self.frame.projection == SCENE_PICTURE;
         state.sum += if is_picture { path.radiance } else { path.path_radiance() };
         state.base = state.base.trace_add(&path.base, self.frame);
@@ -286,6 +296,7 @@ mod tests {
             factor: Vec3::new(0.5, 0.02, 0.9),
             roughness: 0.4,
             normal: Vec3::new(0.6, -0.64, 0.48),
+            guessed: false,
             position: Vec3::new(7.0, 1.0, 1.0),
         };
         let found = trace_unpack(&trace_pack(&slot, eye), eye);
@@ -298,6 +309,11 @@ mod tests {
             (found.normal - slot.normal).length() < 1.0e-4 && found.position == slot.position,
             "{found:?}"
         );
+        assert!(!found.guessed);
+        let guessed = trace_unpack(&trace_pack(&PathSlot { guessed: true, ..slot }, eye), eye);
+        assert!(guessed.guessed && guessed.light == found.light);
+        let dark = PathSlot { guessed: true, light: Vec3::ZERO, ..slot };
+        assert!(trace_unpack(&trace_pack(&dark, eye), eye).guessed);
         // A smooth gloss stays one.
         let smooth = trace_unpack(&trace_pack(&PathSlot { roughness: 1.0e-4, ..slot }, eye), eye);
         assert!(smooth.roughness > 0.0);

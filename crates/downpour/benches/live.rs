@@ -1,10 +1,11 @@
 //! Frames of the street for a live display, against frames with all their layers: `frame` traces the scene for each, `kept` draws
 //! rain before a plate that stays, `display` reads no more than pixels of that, `drag` changes the rain rate before each. `windy` is the day
-//! with a tornado and turbulence, in which rain goes step by step; there `drag` changes the tornado.
+//! with a tornado and turbulence, in which rain goes step by step; there `drag` changes the tornado. `walk` displays a camera that walks down the
+//! street, with rays of all pixels that look for light, and of one in 4 and in 16.
 //!
 //! At 1920x1080 on hardware, at 240x135 on a software driver.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use downpour::gpu::{AdapterChoice, Gpu};
@@ -31,17 +32,34 @@ fn tornado(circulation: f32) -> Wind {
     Wind::new(vec![tornado.into()], None, Some(turbulence)).expect("a wind")
 }
 
+/// A file of the street; where the program was carried without the sources, from the project's folder.
+fn street(weather: &str) -> PathBuf {
+    let file = format!("assets/scenes/street/{weather}.toml");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(&file);
+    if path.exists() { path } else { file.into() }
+}
+
+fn source(weather: &str) -> Source {
+    Source::read(&street(weather), &[], &mut Budget::default()).expect("a weather")
+}
+
+/// A renderer of the street before a camera that walks through it.
+fn walking(gpu: &Gpu, weather: &str, size: [u32; 2], ray_spacing: u32) -> Renderer {
+    let Source { mut weather, loaded, .. } = source(weather);
+    weather.size = size;
+    weather.camera.path = source("walk").weather.camera.path;
+    let options =
+        RendererOptions { samples: 1, kept_frames: KEPT_FRAMES, ray_spacing, ..RendererOptions::default() };
+    Renderer::new(weather, loaded, options, Device::gpu(gpu.clone(), false)).expect("a renderer")
+}
+
 fn live(c: &mut Criterion) {
     let gpu = Gpu::open(&AdapterChoice::Auto).expect("a GPU or its software driver");
     let size = if gpu.adapter().is_software() { [240, 135] } else { [1920, 1080] };
     for name in ["day", "night", "windy"] {
         let weather = if name == "windy" { "day" } else { name };
-        let file = format!("../../assets/scenes/street/{weather}.toml");
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
-        // Where the program was carried without the sources, from the project's folder.
-        let path = if path.exists() { path } else { format!("assets/scenes/street/{weather}.toml").into() };
         let renderer = |kept_frames| {
-            let mut source = Source::read(&path, &[], &mut Budget::default()).expect("a weather");
+            let mut source = source(weather);
             source.weather.size = size;
             if name == "windy" {
                 source.weather.wind = tornado(60.0);
@@ -72,8 +90,25 @@ fn live(c: &mut Criterion) {
             "live {name}: {} of {} drops, begun in {:.2} ms, whole {:.2} ms, {:?}",
             shown.drops_drawn, shown.drops_simulated, shown.begin_ms, shown.frame_ms, shown.passes
         );
-        let files = Roots::open(&path, &[]).expect("a folder");
+        let files = Roots::open(&street(weather), &[]).expect("a folder");
         let (mut weather, mut is_more) = (kept.weather().clone(), false);
+        if name != "windy" {
+            for spacing in [1, 2, 4] {
+                let mut walk = walking(&gpu, name, size, spacing);
+                walk.display(0.0).expect("a frame");
+                let mut time_s = 0.0;
+                let mut next = || {
+                    time_s += 1.0 / 60.0;
+                    walk.display(time_s).expect("a frame")
+                };
+                group.bench_function(BenchmarkId::new("walk", spacing), |b| b.iter(&mut next));
+                let shown = next();
+                println!(
+                    "live {name} walk {spacing}: begun in {:.2} ms, whole {:.2} ms, {:?}",
+                    shown.begin_ms, shown.frame_ms, shown.passes
+                );
+            }
+        }
         group.bench_function(BenchmarkId::from_parameter("drag"), |b| {
             b.iter(|| {
                 is_more = !is_more;

@@ -52,6 +52,9 @@ pub struct RendererOptions {
     pub samples: u32,
     /// Rays to the sky per sample, 0 to 64; with 0 nothing hides the sky.
     pub sky_rays: u32,
+    /// Distance in pixels between those whose rays look for the light of sky and surfaces, which the pixels between take from them: 1 to
+    /// 4; 1: all do. Fewer rays are faster and leave more noise. Of a plate that is kept it is the first frame's.
+    pub ray_spacing: u32,
     /// Refraction of drops; `None` takes the weather's.
     pub refraction: Option<RefractionForm>,
     /// The streak atlas, for a weather that takes the light of lamps on streaks from one.
@@ -74,6 +77,7 @@ impl Default for RendererOptions {
         Self {
             samples: 2,
             sky_rays: 1,
+            ray_spacing: 1,
             refraction: None,
             atlas: None,
             measure: false,
@@ -457,6 +461,12 @@ impl Renderer {
             size: frame_scene.size,
             grid: self.options.samples,
             sky_rays: self.options.sky_rays,
+            // The exposure is that of the first frame, and noise would raise it.
+            ray_spacing: if self.options.kept_frames > 0 && self.drawn == 0 {
+                1
+            } else {
+                self.options.ray_spacing
+            },
             seed: noise_seed(self.weather.rain.seed, time_s),
             rain: RainOptions {
                 form,

@@ -196,6 +196,33 @@ fn a_kept_plate_is_refined(device: &Device) {
     assert!(live.frame(0.5).unwrap().picture.clean == plain.frame(0.5).unwrap().picture.clean);
 }
 
+/// What is around an eye that moves is traced anew in parts, and is the whole of it a few frames after it stands still.
+fn what_is_around_a_moving_eye_follows(device: &Device) {
+    let folder = folder();
+    let options = RendererOptions { kept_frames: 2, ..fast() };
+    let weather = changed(&[]);
+    let mut live = opened(&folder, &weather, &options, device.clone());
+    let mut plain = opened(&folder, &weather, &fast(), device.clone());
+    assert!(live.frame(0.5).unwrap().picture.environment == plain.frame(0.5).unwrap().picture.environment);
+    let moved = changed(&[("position_m = [0, 1.2, 5]", "position_m = [0.05, 1.2, 4.98]")]);
+    live.set_weather(moved.clone(), &files(&folder)).unwrap();
+    plain.set_weather(moved, &files(&folder)).unwrap();
+    let fresh = plain.frame(0.5).unwrap().picture;
+    let mut apart = Vec::new();
+    for frame in 0..4 {
+        let picture = live.frame(0.5).unwrap().picture;
+        assert!(frame > 0 || picture.clean == fresh.clean, "the picture follows at once");
+        let texels = picture.environment.iter().zip(&fresh.environment);
+        apart.push(texels.filter(|(a, b)| a != b).count());
+    }
+    assert!(apart[0] > 0 && apart.is_sorted_by(|a, b| a >= b) && apart[3] == 0, "{apart:?}");
+}
+
+#[test]
+fn what_is_around_a_moving_eye_follows_on_a_cpu() {
+    what_is_around_a_moving_eye_follows(&Device::cpu());
+}
+
 #[test]
 fn a_kept_plate_is_refined_on_a_cpu() {
     a_kept_plate_is_refined(&Device::cpu());
@@ -203,9 +230,11 @@ fn a_kept_plate_is_refined_on_a_cpu() {
 
 #[cfg(feature = "wgpu")]
 #[test]
-fn a_kept_plate_is_refined_on_a_gpu() {
+fn what_is_kept_follows_on_a_gpu() {
     let Some(gpu) = device::gpu(downpour::gpu::LimitSet::Adapter) else { return };
-    a_kept_plate_is_refined(&Device::gpu(gpu, false));
+    let device = Device::gpu(gpu, false);
+    a_kept_plate_is_refined(&device);
+    what_is_around_a_moving_eye_follows(&device);
 }
 
 /// Pixels for a display are those of the frame of the time.

@@ -136,6 +136,14 @@ shared_constants! {
         SKYLIGHT_NOISE: f32 = 25.0;
         /// Cosine of the angle between normals up to which samples of a pixel are of one surface.
         TRACE_SAME_NORMAL: f32 = 0.9;
+        /// Weight of light that no ray has looked for, beside that of pixels whose rays did.
+        SKYLIGHT_GUESSED: f32 = 0.00000001;
+        /// Weight of what is found on another surface, for a pixel whose rays have not looked.
+        SKYLIGHT_LOOSE: f32 = 0.001;
+        /// Roughness of a lobe within which that counts most.
+        SKYLIGHT_LOOSE_ROUGHNESS: f32 = 0.45;
+        /// Invocations along an edge of a workgroup.
+        TRACE_GROUP: u32 = 8;
         /// Projection of a trace: the picture.
         SCENE_PICTURE: u32 = 0;
         /// Samples of the sky along an edge of a texel of the capture that shows nothing else.

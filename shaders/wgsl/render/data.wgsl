@@ -32,6 +32,12 @@ struct RenderFrame {
     wetness: u32,
     // Word of the texels where the tree of surfaces that shine begins; 0: none shine.
     emitters: u32,
+    // In the picture, distance in pixels between those whose rays look for the light of sky and surfaces; 1: all do.
+    ray_spacing: u32,
+    // Column and row of such a pixel in each cell of pixels.
+    ray_column: u32,
+    ray_row: u32,
+    unused: u32,
     // Width, height and first texel of each level of the sky.
     sky_levels: array<vec4u, SCENE_SKY_LEVELS>,
     // Irradiance of the sky over pi as spherical harmonics of degree 2.

@@ -12,6 +12,8 @@ struct PathSlot {
     roughness: f32,
     // The surface's normal; of a gloss, the direction that a mirror would show.
     normal: vec3f,
+    // 1 if no ray has looked for the light: it is that of the open sky.
+    guessed: u32,
     position: vec3f,
 }
 
@@ -71,6 +73,8 @@ struct PathPlan {
     replaced: bool,
     // Width of the mirror's ray by what the surface turns within a pixel.
     spread: f32,
+    // True if what is averaged over neighboring pixels is left to their rays.
+    spared: bool,
 }
 
 // A surface that a ray of the camera has met.
@@ -164,7 +168,7 @@ fn path_plan(surface: Surface, view: vec3f, footprint: f32, told: bool, free: bo
     // If neighbors mirror other things, a mean over them would be wider than the lobe.
     let kept = drawn && surface.roughness * surface.roughness >= spread * PATH_APART;
     let fraction = select(1.0 / f32(max(rays, 1u)), render_frame.ray_fraction, told);
-    var plan = PathPlan(body, 0u, gloss, rays, 0.0, fraction, drawn, kept, false, spread);
+    var plan = PathPlan(body, 0u, gloss, rays, 0.0, fraction, drawn, kept, false, spread, false);
     if rays == 0u {
         plan.body = body * (vec3f(1.0) - gloss);
     } else if path_max(body) <= 0.0 {
@@ -177,6 +181,19 @@ fn path_plan(surface: Surface, view: vec3f, footprint: f32, told: bool, free: bo
     }
     plan.replaced = free && !kept && plan.mirrors > 0u;
     return plan;
+}
+
+// A plan without the rays of which means are taken over neighboring pixels: theirs do.
+fn path_spared(plan: PathPlan) -> PathPlan {
+    var spared = plan;
+    spared.spared = true;
+    // A gloss without rays of its own stays without.
+    spared.kept = plan.kept && (plan.mirrors > 0u || plan.chance > 0.0);
+    spared.rays = 0u;
+    if plan.kept {
+        spared.mirrors = 0u;
+    }
+    return spared;
 }
 
 // The surface of a puddle that a ray has come through, `distance` along the ray.
@@ -334,7 +351,7 @@ fn path_show_mirrored(path: ViewPath, light: PathLight, gloss: vec3f, meeting: P
     var shown = path;
     if light.distance >= 0.0 {
         let slack = meeting.slack + light.distance * (2.0 * meeting.plan.spread + SKYLIGHT_SLACK);
-        shown.mirror = PathSlot(light.shown, slack, gloss * light.factor, 0.0, light.normal, light.position);
+        shown.mirror = PathSlot(light.shown, slack, gloss * light.factor, 0.0, light.normal, select(0u, 1u, meeting.plan.spared), light.position);
     }
     return shown;
 }
@@ -355,7 +372,7 @@ fn path_show_water(
     if meeting.plan.kept {
         shown.mirror = PathSlot(
             light.mirror / max(all * fraction, 1.0e-6), meeting.slack, throughput * fraction, surface.roughness,
-            path_mirrored(surface, towards), surface.position,
+            path_mirrored(surface, towards), 0u, surface.position,
         );
         return shown;
     }
@@ -379,14 +396,21 @@ fn path_show(
     let rays_of_gloss = select(plan.mirrors, plan.rays, plan.chance > 0.0);
     var base = light.base / f32(max(plan.rays, 1u)) + meeting.glow;
     var mirror = light.mirror / f32(max(rays_of_gloss, 1u));
+    let guessed = select(0u, 1u, plan.spared);
+    if plan.spared {
+        base = sky_irradiance(surface.normal) + meeting.glow;
+        if plan.kept {
+            mirror = sky_cone(mirrored, scatter_mirror(surface, -towards).width);
+        }
+    }
     if surface.roughness >= PATH_SHINES {
         // The widest lobes see of what shines about what the diffuse base sees.
         mirror += meeting.glow;
     }
-    if plan.mirrors + plan.rays == 0u {
+    if plan.mirrors + plan.rays == 0u && !plan.spared {
         base = sky_irradiance(surface.normal) + meeting.glow;
         mirror = sky_cone(mirrored, scatter_mirror(surface, -towards).width);
-    } else if plan.mirrors == 0u && plan.chance == 0.0 {
+    } else if plan.mirrors == 0u && plan.chance == 0.0 && !(plan.spared && plan.kept) {
         // Too faint to trace rays for it.
         base -= meeting.glow * plan.gloss / max(plan.body + plan.gloss, vec3f(1.0e-9));
         plan.body += plan.gloss;
@@ -395,23 +419,24 @@ fn path_show(
     let of_base = throughput * plan.body * (cover * meeting.relief);
     let of_gloss = throughput * plan.gloss * cover;
     if meeting.told {
-        shown.base = PathSlot(base, meeting.slack, of_base, 0.0, surface.normal, surface.position);
-        let mirrors = plan.mirrors > 0u && (surface.roughness < PATH_CURVED || !plan.kept)
+        shown.base = PathSlot(base, meeting.slack, of_base, 0.0, surface.normal, guessed, surface.position);
+        let mirrors = (plan.mirrors > 0u || plan.spared && path_max(plan.body) <= 0.0) && (surface.roughness < PATH_CURVED || !plan.kept)
             && path_max(plan.gloss) > PATH_PLAIN_GLOSS;
         shown.plain = select(1u, 0u, mirrors || layer > 0u || meeting.is_soft);
     } else {
         shown.radiance += of_base * base;
     }
     if plan.kept {
-        shown.mirror = PathSlot(mirror, meeting.slack, of_gloss, surface.roughness, mirrored, surface.position);
+        shown.mirror = PathSlot(mirror, meeting.slack, of_gloss, surface.roughness, mirrored, guessed, surface.position);
         return shown;
     }
     shown.radiance += of_gloss * mirror;
     return path_show_mirrored(shown, light, of_gloss, meeting);
 }
 
-// Traces a ray. If it meets the surface that `last` met, it sees the same.
-fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: ViewPath) -> ViewPath {
+// Traces a ray. If it meets the surface that `last` met, it sees the same. `spared`: light of which means are taken over neighboring
+// pixels is left to their rays.
+fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: ViewPath, spared: bool) -> ViewPath {
     var path = path_nothing();
     var throughput = vec3f(1.0);
     var start = origin;
@@ -549,6 +574,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                         path.position = found.position;
                     }
                     near = hit.distance + render_frame.nearest;
+                    meeting.told = path.base.slack == 0.0 && path_cover(found) == 1.0 && found.transmission == 0.0;
                 } else {
                     found = path_secondary(found, ray.roughness);
                     lamps = select(1u, PATH_MIRROR_LAMPS, ray.roughness < PATH_SECONDARY_ROUGHNESS);
@@ -576,6 +602,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     }
                     let lamplight = scene_direct(
                         found, -ray.along, lamps, chances, standoff, depth, turn == 0u, cone * hit.distance,
+                        turn == 0u && spared && meeting.told,
                     );
                     lit = emission + lamplight.lit;
                     if turn == 0u {
@@ -589,7 +616,6 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                 if turn == 0u {
                     meeting.surface = found;
                     meeting.direct = lit;
-                    meeting.told = path.base.slack == 0.0 && path_cover(found) == 1.0 && found.transmission == 0.0;
                     let free = path.mirror.slack == 0.0;
                     if SCENE_WET && of_water {
                         let rippled = ripple.z > PUDDLE_WATER_RIPPLED;
@@ -601,6 +627,9 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                         meeting.plan.replaced = !rippled && free;
                     } else if !unlit {
                         meeting.plan = path_plan(found, -towards, cone * hit.distance, meeting.told, free && !under);
+                        if spared && meeting.told && render_frame.sky_rays > 0u {
+                            meeting.plan = path_spared(meeting.plan);
+                        }
                     }
                     // Neighboring pixels are on one plane if they are no farther from it than this.
                     let from_eye = found.position - origin;
@@ -630,6 +659,10 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                         light.distance = hit.distance;
                         light.normal = found.normal;
                         light.position = found.position;
+                        if meeting.plan.spared {
+                            light.shown = sky_irradiance(found.normal);
+                            break;
+                        }
                     }
                 } else if bounce + 1u == PATH_BOUNCES {
                     ambient = path_ambient(found, (given + lit) / f32(bounce + 1u));

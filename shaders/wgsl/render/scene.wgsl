@@ -224,9 +224,10 @@ fn scene_disk(numbers: vec2f, k: u32) -> vec2f {
 // are asked whether something hides them; else so many are drawn by what each would give (`numbers.w` in [0, 1)), for all of
 // them. A place of a surface that shines is drawn with the first three numbers, and is one of the lamps. `is_first`: the surface
 // is what the camera sees: light without hard shadows is told apart, and rays of its gloss see what shines. `footprint`: width of
-// the pixel there, m. `standoff` and `under`: scene_arrival.
+// the pixel there, m. `spared`: of light without hard shadows no ray asks what hides it. `standoff` and `under`: scene_arrival.
 fn scene_direct(
     surface: Surface, view: vec3f, draws: u32, numbers: vec4f, standoff: f32, under: vec2f, is_first: bool, footprint: f32,
+    spared: bool,
 ) -> SceneDirect {
     var result = SceneDirect(vec3f(0.0), vec3f(0.0), 0.0, 0.0, false);
     var count = render_frame.light_count;
@@ -301,6 +302,13 @@ fn scene_direct(
         } else if fraction <= total * SCENE_MIN_LAMP {
             continue;
         }
+        if !is_area {
+            result.flat_light += light_weight(glow);
+            result.relief_light += light_weight(relief);
+        }
+        if spared && light_weight(lit) <= total * SCENE_MIN_LAMP {
+            continue;
+        }
         // Each lamp has places of its own; they come from other digits of the number that draws a lamp.
         let digits = fract(numbers.w * vec2f(SCENE_DIGIT, SCENE_OTHER_DIGIT));
         let place_numbers = fract(digits + f32(index) * vec2f(SCENE_LATTICE, SCENE_OTHER_LATTICE));
@@ -318,10 +326,6 @@ fn scene_direct(
         result.is_soft = result.is_soft || shadow.w > 0.0;
         result.lit += lit * passes;
         result.glow += glow * passes;
-        if !is_area {
-            result.flat_light += light_weight(glow);
-            result.relief_light += light_weight(relief);
-        }
     }
     return result;
 }

@@ -18,6 +18,8 @@ struct SkylightSlot {
     roughness: f32,
     // Of what counts as the same: the normal, or the direction that a mirror would show.
     direction: vec3f,
+    // Weight of its light.
+    weight: f32,
     position: vec3f,
 }
 
@@ -39,6 +41,7 @@ fn skylight_slot(pixel: u32, slot: u32) -> SkylightSlot {
         packed = skylight_ambient[pixel].mirror;
     }
     let found = trace_unpack(packed);
+    let weight = select(1.0, SKYLIGHT_GUESSED, found.guessed > 0u);
     var normal = found.normal;
     if found.roughness > 0.0 {
         // Between what is seen and what is mirrored.
@@ -46,7 +49,7 @@ fn skylight_slot(pixel: u32, slot: u32) -> SkylightSlot {
         let sum = found.normal - seen / max(sqrt(dot(seen, seen)), 1.0e-20);
         normal = sum / max(sqrt(dot(sum, sum)), 1.0e-20);
     }
-    return SkylightSlot(found.light, found.slack, normal, found.roughness, found.normal, found.position);
+    return SkylightSlot(found.light, found.slack, normal, found.roughness, found.normal, weight, found.position);
 }
 
 // Agreement of the roughness of two glosses, 0 to 1: a film and the dry surface beside it mirror different things.
@@ -74,6 +77,17 @@ fn skylight_same(own: SkylightSlot, other: SkylightSlot) -> f32 {
     return fourth * fourth * near;
 }
 
+// Weight of a pixel in the mean of another: the degree to which both show the same surface. If no ray has looked for the light of that
+// one, any surface is better than none, and best is one that faces or mirrors the same way.
+fn skylight_near(own: SkylightSlot, other: SkylightSlot) -> f32 {
+    let same = skylight_same(own, other);
+    if own.weight >= 1.0 || other.slack <= 0.0 || (own.roughness > 0.0) != (other.roughness > 0.0) {
+        return same;
+    }
+    let alike = skylight_lobe(dot(own.direction, other.direction), SKYLIGHT_LOOSE_ROUGHNESS);
+    return max(same, SKYLIGHT_LOOSE * max(alike, SKYLIGHT_LOOSE));
+}
+
 // Degree to which two means are the same but for their noise, 0 to 1; variances are those of the means.
 fn skylight_alike(own: vec4f, other: vec4f) -> f32 {
     let apart = color_luminance(own.xyz) - color_luminance(other.xyz);
@@ -95,9 +109,9 @@ fn skylight_mean(x: u32, y: u32, slot: u32) -> vec4f {
     for (var row = top; row <= min(y + SKYLIGHT_RADIUS, render_frame.camera.height - 1u); row += 1u) {
         for (var column = left; column <= min(x + SKYLIGHT_RADIUS, render_frame.camera.width - 1u); column += 1u) {
             let other = skylight_slot(row * render_frame.camera.width + column, slot);
-            var counts = skylight_hat(x, column) * skylight_hat(y, row);
+            var counts = skylight_hat(x, column) * skylight_hat(y, row) * other.weight;
             if row != y || column != x {
-                counts *= skylight_same(own, other);
+                counts *= skylight_near(own, other);
             }
             if counts > 0.0 {
                 let luminance = color_luminance(other.light);

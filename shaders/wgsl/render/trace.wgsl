@@ -16,7 +16,7 @@ struct TraceSlot {
     position: vec3f,
     // The surface's normal; of a gloss, the direction that a mirror would show. Octahedral, 16 bits each.
     normal: u32,
-    // Sum of the light's red, green and blue.
+    // Sum of the light's red, green and blue; below zero if it is guessed.
     light: f32,
     // Fractions of it that are red and green, 12 bits each, and the roughness of a gloss, 8 bits; 0: a diffuse base.
     look: u32,
@@ -64,22 +64,23 @@ fn trace_pack(slot: PathSlot) -> TraceSlot {
     let slack = clamp(slot.slack / max(sqrt(dot(from_eye, from_eye)), 1.0e-20), 1.0e-4, 6.0e4);
     let factor = min(slot.factor, vec3f(6.0e4));
     return TraceSlot(
-        slot.position, pack2x16snorm(packing_octahedral_encode(slot.normal)), sum, look,
+        slot.position, pack2x16snorm(packing_octahedral_encode(slot.normal)), select(sum, -max(sum, 1.0e-30), slot.guessed > 0u), look,
         vec2u(pack2x16float(factor.xy), pack2x16float(vec2f(factor.z, slack))),
     );
 }
 
 // A slot as it was before it was packed.
 fn trace_unpack(slot: TraceSlot) -> PathSlot {
-    let red = f32(slot.look & 4095u) * (slot.light / 4095.0);
-    let green = f32(slot.look >> 12u & 4095u) * (slot.light / 4095.0);
-    let light = vec3f(red, green, max(slot.light - red - green, 0.0));
+    let sum = abs(slot.light);
+    let red = f32(slot.look & 4095u) * (sum / 4095.0);
+    let green = f32(slot.look >> 12u & 4095u) * (sum / 4095.0);
+    let light = vec3f(red, green, max(sum - red - green, 0.0));
     let low = unpack2x16float(slot.factor.x);
     let high = unpack2x16float(slot.factor.y);
     let from_eye = slot.position - render_frame.camera.eye;
     return PathSlot(
         light, high.y * sqrt(dot(from_eye, from_eye)), vec3f(low, high.x), f32(slot.look >> 24u) / 255.0,
-        packing_octahedral_decode(unpack2x16snorm(slot.normal)), slot.position,
+        packing_octahedral_decode(unpack2x16snorm(slot.normal)), select(0u, 1u, slot.light < 0.0), slot.position,
     );
 }
 
@@ -142,6 +143,20 @@ fn trace_direction(x: f32, y: f32) -> vec3f {
     return camera_direction(render_frame.camera, x, y);
 }
 
+// True if rays of a pixel look for the light of sky and surfaces; else those of its neighbors do for it.
+fn trace_gathers(x: u32, y: u32) -> bool {
+    let spacing = render_frame.ray_spacing;
+    return x % spacing == render_frame.ray_column && y % spacing == render_frame.ray_row;
+}
+
+// Column or row of the pixel of an invocation, from its column or row. Those of a workgroup are as far apart as pixels whose rays look
+// for light, so that all of them do or none.
+fn trace_place(invocation: u32) -> u32 {
+    let spacing = render_frame.ray_spacing;
+    let group = invocation / TRACE_GROUP;
+    return (group / spacing * TRACE_GROUP + invocation % TRACE_GROUP) * spacing + group % spacing;
+}
+
 // A pixel before its first sample.
 fn trace_begin() -> TraceState {
     var state = TraceState();
@@ -173,7 +188,8 @@ fn trace_sample(state: ptr<function, TraceState>, x: u32, y: u32, k: u32) {
     let direction = trace_direction(f32(x) + dx, f32(y) + dy);
     let random = path_lattice_words(x, y, index);
     let last = (*state).last;
-    let path = path_trace(render_frame.camera.eye, direction, render_frame.camera.pixel_angle, random, last);
+    let spared = !trace_gathers(x, y);
+    let path = path_trace(render_frame.camera.eye, direction, render_frame.camera.pixel_angle, random, last, spared);
     if render_frame.projection == SCENE_PICTURE {
         (*state).sum += path.radiance;
     } else {
@@ -218,26 +234,29 @@ fn trace_pixel(x: u32, y: u32) -> vec4f {
 // All samples of the pixels.
 @compute @workgroup_size(8, 8, 1)
 fn main_trace(@builtin(global_invocation_id) id: vec3u) {
-    let y = id.y + render_frame.first_row;
-    if id.x >= render_frame.camera.width || y >= render_frame.camera.height {
+    let x = trace_place(id.x);
+    let y = trace_place(id.y) + render_frame.first_row;
+    if x >= render_frame.camera.width || y >= render_frame.camera.height {
         return;
     }
-    trace_picture[y * render_frame.camera.width + id.x] = trace_pixel(id.x, y);
+    trace_picture[y * render_frame.camera.width + x] = trace_pixel(x, y);
 }
 
 // One sample of the pixels: that of the turn. For a driver that ends the loops of an invocation after so many turns.
 @compute @workgroup_size(8, 8, 1)
 fn main_trace_sample(@builtin(global_invocation_id) id: vec3u) {
-    let y = id.y + render_frame.first_row;
-    if id.x >= render_frame.camera.width || y >= render_frame.camera.height {
+    let x = trace_place(id.x);
+    let row = trace_place(id.y);
+    let y = row + render_frame.first_row;
+    if x >= render_frame.camera.width || y >= render_frame.camera.height {
         return;
     }
-    let at = id.y * render_frame.camera.width + id.x;
+    let at = row * render_frame.camera.width + x;
     var state = trace_begin();
     if render_frame.turn > 0u {
         state = trace_states[at];
     }
-    trace_sample(&state, id.x, y, render_frame.turn);
+    trace_sample(&state, x, y, render_frame.turn);
     trace_states[at] = state;
 }
 

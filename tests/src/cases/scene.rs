@@ -408,19 +408,35 @@ const SIZE: [u32; 2] = [93, 62];
 
 /// A picture of a scene, from an eye that looks at its middle.
 pub(super) fn picture(gpu: &Gpu, scene: &SceneData, eye: Vec3, sky_rays: u32) -> Result<Run, GpuError> {
-    picture_by(SampleDispatches::Together, gpu, scene, eye, sky_rays)
+    picture_by(PictureRays { sky_rays, ..PictureRays::default() }, gpu, scene, eye)
 }
 
-fn picture_by(
-    samples: SampleDispatches,
+/// Rays of a picture.
+#[derive(Clone, Copy)]
+pub(super) struct PictureRays {
+    pub(super) samples: SampleDispatches,
+    pub(super) sky_rays: u32,
+    pub(super) spacing: u32,
+}
+
+impl Default for PictureRays {
+    fn default() -> Self {
+        Self { samples: SampleDispatches::Together, sky_rays: 1, spacing: 1 }
+    }
+}
+
+/// A picture of a scene by such rays.
+pub(super) fn picture_by(
+    rays: PictureRays,
     gpu: &Gpu,
     scene: &SceneData,
     eye: Vec3,
-    sky_rays: u32,
 ) -> Result<Run, GpuError> {
+    let PictureRays { samples, sky_rays, spacing } = rays;
     let view = Viewpoint { eye, forward: -eye, up: Vec3::Y, fov_y: 0.9 };
     let frame = RenderFrame::new(scene, &view, SIZE, 2, sky_rays, 7).expect("a frame");
-    let key = format!("picture {eye} {sky_rays} {}", digest(scene));
+    let frame = frame.with_ray_spacing(spacing);
+    let key = format!("picture {eye} {sky_rays} {spacing} {}", digest(scene));
     let cpu = kept(&key, || SceneView { data: scene, frame: &frame }.picture());
     let pipeline = ScenePipeline::with_samples(gpu, samples)?;
     let gpu = pipeline.picture(&pipeline.upload(scene)?, &frame)?;
@@ -489,7 +505,21 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             kernel: &TRACE_SAMPLE_KERNEL,
             ..case("main_trace_sample: surfaces that shine, and lamps with a size", SHINING, |gpu| {
                 let eye = Vec3::new(0.6, 1.4, 3.0);
-                picture_by(SampleDispatches::Apart, gpu, &shining_scene(), eye, 2)
+                let rays =
+                    PictureRays { samples: SampleDispatches::Apart, sky_rays: 2, ..PictureRays::default() };
+                picture_by(rays, gpu, &shining_scene(), eye)
+            })
+        },
+        case("main_trace: rays of one pixel in 4 that look for light", SHINING, |gpu| {
+            let rays = PictureRays { spacing: 2, ..PictureRays::default() };
+            picture_by(rays, gpu, &shining_scene(), Vec3::new(0.6, 1.4, 3.0))
+        }),
+        KernelCase {
+            kernel: &TRACE_SAMPLE_KERNEL,
+            ..case("main_trace_sample: rays of one pixel in 16 that look for light", SHINING, |gpu| {
+                let rays =
+                    PictureRays { samples: SampleDispatches::Apart, spacing: 4, ..PictureRays::default() };
+                picture_by(rays, gpu, &shining_scene(), Vec3::new(0.6, 1.4, 3.0))
             })
         },
     ]

@@ -10,7 +10,7 @@ use downpour_trace::wet::{wet_arrival, wet_corner, wet_fraction, wet_noise, wet_
 use downpour_weather::WetnessAt;
 use glam::Vec3;
 
-use super::scene::{picture, scene, shining_scene};
+use super::scene::{PictureRays, picture_by, scene, shining_scene};
 use crate::Domain::{AnyWord, Below, Or, Uniform, Unit3};
 use crate::function::Run;
 use crate::words::{Args, IntoWords as _};
@@ -129,26 +129,33 @@ pub(super) fn kernels() -> Vec<KernelCase> {
     vec![
         case("main_trace: wet surfaces from near", DULL, case_near),
         case("main_trace: wet surfaces under the sky alone", DULL, case_far),
-        case("main_trace: wet surfaces among what shines", SHINING, case_shining),
+        case("main_trace: wet surfaces among what shines", SHINING, |gpu| case_shining(gpu, 1)),
+        case("main_trace: wet surfaces whose light rays of one pixel in 4 look for", SHINING, |gpu| {
+            case_shining(gpu, 2)
+        }),
     ]
 }
 
 /// A scene of the other cases in a rain that comes aslant.
-fn case(gpu: &Gpu, mut scene: SceneData, eye: Vec3, sky_rays: u32, at: WetnessAt) -> Result<Run, GpuError> {
+fn case(gpu: &Gpu, scene: SceneData, eye: Vec3, rays: PictureRays, at: WetnessAt) -> Result<Run, GpuError> {
+    let mut scene = scene;
     let towards = Vec3::new(0.35, 1.0, 0.5).normalize();
     scene.set_wetness(Some(&SceneWetness { at, towards, shift: Vec3::new(3.0, 0.0, 5.0) }));
-    picture(gpu, &scene, eye, sky_rays)
+    picture_by(rays, gpu, &scene, eye)
 }
 
 fn case_near(gpu: &Gpu) -> Result<Run, GpuError> {
-    case(gpu, scene(), Vec3::new(0.6, 1.0, 2.6), 2, WetnessAt { before: 0.8, kept: 0.7, since: 0.3 })
+    let rays = PictureRays { sky_rays: 2, ..PictureRays::default() };
+    case(gpu, scene(), Vec3::new(0.6, 1.0, 2.6), rays, WetnessAt { before: 0.8, kept: 0.7, since: 0.3 })
 }
 
 fn case_far(gpu: &Gpu) -> Result<Run, GpuError> {
-    case(gpu, scene(), Vec3::new(-3.0, 3.0, 6.0), 0, WetnessAt { before: 6.0, kept: 1.0, since: 0.0 })
+    let rays = PictureRays { sky_rays: 0, ..PictureRays::default() };
+    case(gpu, scene(), Vec3::new(-3.0, 3.0, 6.0), rays, WetnessAt { before: 6.0, kept: 1.0, since: 0.0 })
 }
 
-fn case_shining(gpu: &Gpu) -> Result<Run, GpuError> {
+fn case_shining(gpu: &Gpu, spacing: u32) -> Result<Run, GpuError> {
     let at = WetnessAt { before: 2.0, kept: 0.9, since: 0.3 };
-    case(gpu, shining_scene(), Vec3::new(1.0, 1.2, 2.8), 1, at)
+    let rays = PictureRays { spacing, ..PictureRays::default() };
+    case(gpu, shining_scene(), Vec3::new(1.0, 1.2, 2.8), rays, at)
 }

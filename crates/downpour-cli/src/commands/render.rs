@@ -77,6 +77,10 @@ pub(crate) struct RenderArguments {
     #[arg(long, value_name = "N", default_value = "1", value_parser = quantity::sky_rays)]
     #[arg(allow_hyphen_values = true)]
     sky_rays: u32,
+    /// Pixels between those whose rays look for the light of sky and surfaces, 1 to 4: more are faster, with more noise.
+    #[arg(long, value_name = "N", default_value = "1", value_parser = quantity::ray_spacing)]
+    #[arg(allow_hyphen_values = true)]
+    ray_spacing: u32,
     #[command(flatten)]
     streaks: StreaksArgument,
     /// Lookup of the color of a drop's pixel [default: the weather's].
@@ -163,6 +167,7 @@ impl RenderArguments {
             kept_frames: 0,
             samples: self.samples,
             sky_rays: self.sky_rays,
+            ray_spacing: self.ray_spacing,
             refraction: self.refraction.map(RefractionForm::from),
             atlas: self.streaks.read(&weather)?.atlas()?,
             measure,

@@ -1,5 +1,6 @@
 //! A whole picture on a GPU.
 
+use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
@@ -27,6 +28,7 @@ use super::falling::{FallingPass, FoundDrops, FoundReadback, PictureDrops};
 use super::scene::{SceneOnGpu, ScenePipeline};
 use crate::data::{RenderFrame, SceneData};
 use crate::kept::KeptPlate;
+use crate::kept_environment::KeptEnvironment;
 use crate::picture::picture_frame;
 use crate::scene::SceneView;
 
@@ -92,7 +94,9 @@ pub struct PictureRenderer {
     /// The scene and the masks of the last picture.
     uploaded: Arc<Mutex<Option<(SceneOnGpu, RainOnGpu)>>>,
     /// The plate of the last picture, if it was to be kept.
-    plate: Arc<Mutex<Option<KeptPlate<PlateBuffers>>>>,
+    plate: Arc<Mutex<Option<KeptPlate<wgpu::Buffer>>>>,
+    /// The environment map of the last picture, if it was to be kept.
+    environment: Arc<Mutex<Option<KeptEnvironment<wgpu::Buffer>>>>,
 }
 
 /// Use of a picture.
@@ -103,13 +107,6 @@ pub struct PictureUse {
     pub kept_frames: u32,
     /// Way to the pixels of a picture that is only displayed: [`PictureOnGpu::begin_display`].
     pub tone: Option<Tone>,
-}
-
-/// Buffers of a plate that stays.
-#[derive(Clone, Debug)]
-struct PlateBuffers {
-    mean: wgpu::Buffer,
-    environment: wgpu::Buffer,
 }
 
 impl PictureRenderer {
@@ -134,6 +131,7 @@ impl PictureRenderer {
             pace: Arc::default(),
             uploaded: Arc::default(),
             plate: Arc::default(),
+            environment: Arc::default(),
         })
     }
 
@@ -227,15 +225,11 @@ impl PictureRenderer {
         let mut kept = self.plate.lock().unwrap_or_else(PoisonError::into_inner);
         // After an error there is none. Pictures that keep none leave that of others alone.
         let last = if of.kept_frames > 0 { kept.take() } else { None };
-        let known = last.filter(|plate| plate.shows(scene, &frame, &rain.environment));
-        let is_known = known.is_some();
+        let known = last.filter(|plate| plate.shows(scene, &frame));
         let mut stays = match (of.kept_frames, known) {
             (0, _) => None,
             (_, Some(known)) => Some(known),
-            (_, None) => {
-                let buffers = self.plate_buffers(&camera, &rain)?;
-                Some(KeptPlate::new(scene, &frame, &rain.environment, buffers))
-            }
+            (_, None) => Some(KeptPlate::new(scene, &frame, self.mean_of_pictures(&camera)?)),
         };
         let next = match stays.as_mut() {
             Some(plate) => plate.next(&frame, of.kept_frames),
@@ -243,10 +237,25 @@ impl PictureRenderer {
         };
         // Buffers that are given back when the picture has been read.
         let mut layers: Vec<(&'static str, wgpu::Buffer)> = Vec::new();
-        let mut clean = stays.as_ref().map(|plate| plate.held.mean.clone());
+        let mut clean = stays.as_ref().map(|plate| plate.held.clone());
+        let mut around = self.environment.lock().unwrap_or_else(PoisonError::into_inner);
+        let environment = self.environment_map(of, scene, &frame, &rain, &mut around)?;
+        if of.kept_frames == 0 {
+            layers.push(("environment map", environment.0.clone()));
+        }
+        let around_kept = if of.kept_frames > 0 { around.take() } else { None };
+        let plate = self.scene.plate_around(pool, &uploaded.0, &frame, &rain, environment)?;
+        let captured = plate.finest();
+        let mut is_captured = false;
         if let Some((frame, count)) = next {
             let traced = self.scene.prepare_paced(pool, &uploaded.0, &frame, pace)?;
-            passes.run_each("scene", &traced.rays())?;
+            let mut batches: Vec<Vec<_>> = traced.rays().into_iter().map(|band| vec![band]).collect();
+            // Few texels with long ways keep a large device idle: it traces the picture meanwhile.
+            is_captured = self.scene.takes_samples_together();
+            if is_captured {
+                batches[0].splice(..0, captured.iter().copied());
+            }
+            passes.run_batches("scene", &batches)?;
             passes.run_each("skylight", &traced.filters())?;
             if let Some(mean) = &clean {
                 let more = self.refine.prepare(pool, camera.size(), count, traced.picture(), mean)?;
@@ -256,15 +265,6 @@ impl PictureRenderer {
             clean.get_or_insert(traced.picture().clone());
         }
         let clean = clean.expect("a plate that is not kept is traced");
-        let environment = match stays.as_ref() {
-            Some(plate) => (plate.held.environment.clone(), is_known),
-            None => {
-                let made = self.rain.environment(pool, &rain)?;
-                layers.push(("environment map", made.clone()));
-                (made, false)
-            }
-        };
-        let plate = self.scene.plate_around(pool, &uploaded.0, &frame, &rain, environment)?;
         let (falling, count, search) = passes.host("drops to the device", || match drops {
             PictureDrops::Listed(drops) => {
                 let falling: Vec<EyeDrop> = drops.par_iter().map(|drop| EyeDrop::new(drop, eye)).collect();
@@ -286,9 +286,9 @@ impl PictureRenderer {
         let of_masks = (&uploaded.1, masks);
         let of_rain = (&rain, &options.rain);
         let pass = self.rain.prepare_falling(pool, &plate.of(&clean), of_masks, of_rain, &lights, falling)?;
-        let captured = plate.dispatches(&pass);
         if !captured.is_empty() {
-            passes.run("capture", &captured)?;
+            let finest = if is_captured { Vec::new() } else { captured };
+            passes.run("capture", &[finest, pass.environment()].concat())?;
         }
         if let Some(search) = &search {
             passes.run_stages("search", &search.stages())?;
@@ -330,8 +330,9 @@ impl PictureRenderer {
         layers.extend(pixels.iter().map(|pixels| ("display picture", pixels.clone())));
         if stays.is_some() {
             *kept = stays;
+            *around = around_kept;
         }
-        drop(kept);
+        drop((kept, around));
         let device = DeviceUse { bytes_uploaded: pool.written(), buffers_made: pool.made() - made_before };
         Ok(PictureOnGpu {
             gpu: self.gpu.clone(),
@@ -356,11 +357,34 @@ impl PictureRenderer {
         })
     }
 
-    /// Buffers of a plate that stays, for a picture and its rain.
-    fn plate_buffers(&self, camera: &Camera, rain: &Rain) -> Result<PlateBuffers, GpuError> {
+    /// The environment map of a frame, and the rows of it that are to be traced: in `kept`, if it stays from picture to picture.
+    fn environment_map(
+        &self,
+        of: PictureUse,
+        scene: &SceneData,
+        frame: &RenderFrame,
+        rain: &Rain,
+        kept: &mut Option<KeptEnvironment<wgpu::Buffer>>,
+    ) -> Result<(wgpu::Buffer, Vec<Range<u32>>), GpuError> {
+        let layout = &rain.environment;
+        if of.kept_frames == 0 {
+            return Ok((
+                self.rain.environment(&*self.pool, rain)?,
+                std::iter::once(0..layout.size).collect(),
+            ));
+        }
+        let map = match kept.take().filter(|map| map.fits(scene, frame, layout)) {
+            Some(map) => map,
+            None => KeptEnvironment::new(scene, frame, layout, self.rain.environment(&self.gpu, rain)?),
+        };
+        let map = kept.insert(map);
+        Ok((map.held.clone(), map.next(frame.camera.eye)))
+    }
+
+    /// Buffer of a plate that stays.
+    fn mean_of_pictures(&self, camera: &Camera) -> Result<wgpu::Buffer, GpuError> {
         let pixels = u64::from(camera.width) * u64::from(camera.height);
-        let mean = self.gpu.empty_buffer("mean of pictures", 16 * pixels, wgpu::BufferUsages::STORAGE)?;
-        Ok(PlateBuffers { mean, environment: self.rain.environment(&self.gpu, rain)? })
+        self.gpu.empty_buffer("mean of pictures", 16 * pixels, wgpu::BufferUsages::STORAGE)
     }
 
     /// Frequencies of drops in some fluids on the device: those of the last picture, if they are the same.

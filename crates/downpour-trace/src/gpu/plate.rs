@@ -1,5 +1,7 @@
 //! The plate of a scene on the device, for rain.
 
+use std::ops::Range;
+
 use downpour_gpu::{BufferSource, Dispatch, GpuError, wgpu};
 use downpour_render::gpu::{LightingOnGpu, PlateOnGpu, RainPass, RainPipeline};
 use downpour_render::rain::Rain;
@@ -12,9 +14,8 @@ use crate::trace::TraceAmbient;
 /// Environment map, lamps and obstacles of a scene, on the device, for rain.
 #[derive(Debug)]
 pub struct ScenePlate<'a> {
-    finest: SceneRays<'a>,
-    /// True if the environment map is there already.
-    is_kept: bool,
+    /// Rows of the finest level of the environment map that are to be traced; none if it is there already.
+    finest: Vec<SceneRays<'a>>,
     environment: wgpu::Buffer,
     lighting: LightingOnGpu,
 }
@@ -32,26 +33,32 @@ impl ScenePipeline {
         rains: &RainPipeline,
         rain: &Rain,
     ) -> Result<ScenePlate<'_>, GpuError> {
-        self.plate_around(buffers, scene, frame, rain, (rains.environment(buffers, rain)?, false))
+        let all = std::iter::once(0..rain.environment.size).collect();
+        self.plate_around(buffers, scene, frame, rain, (rains.environment(buffers, rain)?, all))
     }
 
-    /// The same with an environment map, which is there already or is to be traced into this buffer.
+    /// The same with an environment map in a buffer, of which these rows are to be traced: whole workgroups.
     pub(super) fn plate_around(
         &self,
         buffers: &impl BufferSource,
         scene: &SceneOnGpu,
         frame: &RenderFrame,
         rain: &Rain,
-        (environment, is_kept): (wgpu::Buffer, bool),
+        (environment, traced): (wgpu::Buffer, Vec<Range<u32>>),
     ) -> Result<ScenePlate<'_>, GpuError> {
         let of_map = environment_frame(frame, &rain.environment);
         // An environment map has no filter: nothing is written there.
         let nothing = buffers.storage("no light of the sky", &[TraceAmbient::default()])?;
-        let rows = of_map.camera.height;
-        let states = self.states(buffers, &of_map.camera, rows)?;
-        let finest = self.rays(buffers, scene, &of_map, [&environment, &nothing], states.as_ref(), rows)?;
+        let most = traced.iter().map(|rows| rows.len() as u32).max().unwrap_or(0);
+        let states = if most > 0 { self.states(buffers, &of_map.camera, most)? } else { None };
+        let mut finest = Vec::new();
+        for rows in traced {
+            let of_rows = RenderFrame { first_row: rows.start, ..of_map };
+            let to = [&environment, &nothing];
+            finest.push(self.rays(buffers, scene, &of_rows, to, states.as_ref(), rows.len() as u32)?);
+        }
         let lighting = scene.lighting(buffers, frame)?;
-        Ok(ScenePlate { finest, is_kept, environment, lighting })
+        Ok(ScenePlate { finest, environment, lighting })
     }
 }
 
@@ -67,12 +74,15 @@ impl ScenePlate<'_> {
         &self.lighting
     }
 
-    /// Dispatches that trace the environment map, with its coarser levels; none if it is there already.
+    /// Dispatches that trace what is to be traced of the environment map, and make its coarser levels; none if it is there already.
     #[must_use]
     pub fn dispatches<'a>(&'a self, pass: &'a RainPass<'_>) -> Vec<Dispatch<'a>> {
-        if self.is_kept {
-            return Vec::new();
-        }
-        self.finest.dispatches().chain(pass.environment()).collect()
+        let finest = self.finest();
+        if finest.is_empty() { finest } else { [finest, pass.environment()].concat() }
+    }
+
+    /// Those of the finest level alone.
+    pub(super) fn finest(&self) -> Vec<Dispatch<'_>> {
+        self.finest.iter().flat_map(SceneRays::dispatches).collect()
     }
 }

@@ -113,6 +113,11 @@ impl ScenePipeline {
         Ok(cell.get_or_init(|| made))
     }
 
+    /// True if all samples of a pixel are one dispatch.
+    pub(super) fn takes_samples_together(&self) -> bool {
+        self.samples == SampleDispatches::Together
+    }
+
     /// Uploads a scene.
     ///
     /// # Errors
@@ -161,7 +166,7 @@ impl ScenePipeline {
         let samples = f64::from(frame.grid * frame.grid);
         let paced = sample_ms.map_or(0, |ms| (DISPATCH_MS / (ms * samples).max(1.0e-9)) as u32);
         let rows = paced.max(PIXELS_PER_DISPATCH) / frame.camera.width.max(1);
-        let rows = rows.clamp(8, frame.camera.height.max(8)).next_multiple_of(8);
+        let rows = rows.clamp(8, frame.camera.height.max(8)).next_multiple_of(8 * frame.ray_spacing);
         let (mut bands, mut filters) = (Vec::new(), Vec::new());
         let states = self.states(buffers, &frame.camera, rows.min(frame.camera.height))?;
         for first_row in (0..frame.camera.height).step_by(rows as usize) {
@@ -208,7 +213,10 @@ impl ScenePipeline {
         rows: u32,
     ) -> Result<SceneRays<'_>, GpuError> {
         let tracer = self.tracer(frame)?;
-        let groups = groups(&frame.camera, rows);
+        let spacing = frame.ray_spacing;
+        // Pixels of a workgroup are `spacing` apart: as many groups as there are pixels in a cell share an area.
+        let [columns, rows] = [frame.camera.width, rows].map(|size| size.div_ceil(8 * spacing) * spacing);
+        let groups = [columns, rows, 1];
         let Some((seen, states)) = self.seen.as_ref().zip(states) else {
             let uniform = buffers.uniform("frame", frame)?;
             let bound = tracer.bind_at(buffers, scene.buffers(&uniform).into_iter().chain((7..).zip(to)))?;

@@ -36,6 +36,8 @@ pub(super) struct PathPlan {
     pub(super) replaced: bool,
     /// Width of the mirror's ray by what the surface turns within a pixel.
     pub(super) spread: f32,
+    /// True if what is averaged over neighboring pixels is left to their rays.
+    pub(super) spared: bool,
 }
 
 impl PathPlan {
@@ -51,7 +53,20 @@ impl PathPlan {
         kept: false,
         replaced: false,
         spread: 0.0,
+        spared: false,
     };
+
+    /// The plan without the rays of which means are taken over neighboring pixels: theirs do.
+    pub(super) fn path_spared(self) -> Self {
+        Self {
+            spared: true,
+            // A gloss without rays of its own stays without.
+            kept: self.kept && (self.mirrors > 0 || self.chance > 0.0),
+            rays: 0,
+            mirrors: if self.kept { 0 } else { self.mirrors },
+            ..self
+        }
+    }
 }
 
 /// The greatest part of a color.
@@ -160,6 +175,7 @@ impl SceneView<'_> {
             kept,
             replaced: false,
             spread,
+            spared: false,
         };
         if rays == 0 {
             plan.body = body * (Vec3::ONE - gloss);

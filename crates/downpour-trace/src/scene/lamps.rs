@@ -57,6 +57,8 @@ pub(crate) struct SceneAsked {
     /// Width of the pixel, m, on the surface that the camera sees: light without hard shadows is told apart, and rays of its gloss
     /// see what shines. `None` for other surfaces.
     pub(crate) footprint: Option<f32>,
+    /// True if no ray asks what hides light without hard shadows.
+    pub(crate) spared: bool,
 }
 
 /// What one lamp gives if nothing hides it.
@@ -235,7 +237,7 @@ impl SceneView<'_> {
 
     /// Light of lamps, sun, and surfaces that shine on a surface, toward the viewer.
     pub(crate) fn scene_direct(&self, surface: &Surface, view: Vec3, asked: &SceneAsked) -> SceneDirect {
-        let &SceneAsked { draws, numbers, standoff, under, footprint } = asked;
+        let &SceneAsked { draws, numbers, standoff, under, footprint, spared } = asked;
         let is_first = footprint.is_some();
         let lights = self.frame.light_count;
         let mut count = lights;
@@ -312,6 +314,13 @@ impl SceneView<'_> {
             } else if fraction <= total * SCENE_MIN_LAMP {
                 continue;
             }
+            if !is_area {
+                result.flat_light += light_weight(glow);
+                result.relief_light += light_weight(relief);
+            }
+            if spared && light_weight(lit) <= total * SCENE_MIN_LAMP {
+                continue;
+            }
             // Each lamp has places of its own; they come from other digits of the number that draws a lamp.
             let place_numbers = [(SCENE_DIGIT, SCENE_LATTICE), (SCENE_OTHER_DIGIT, SCENE_OTHER_LATTICE)]
                 .map(|(digits, turn)| ((numbers[3] * digits).fract() + index as f32 * turn).fract());
@@ -329,10 +338,6 @@ impl SceneView<'_> {
             result.is_soft |= is_soft;
             result.lit += lit * passes;
             result.glow += glow * passes;
-            if !is_area {
-                result.flat_light += light_weight(glow);
-                result.relief_light += light_weight(relief);
-            }
         }
         result
     }

@@ -16,6 +16,9 @@ use super::{Answer, DeviceChoice, Fault, Request};
 /// Pictures over which the scene without its rain is refined: each costs the scene, so that there are few.
 pub(crate) const KEPT_FRAMES: u32 = 4;
 
+/// Pixels between those whose rays look for light while the camera moves: rays are most of a frame then.
+const RAY_SPACING: u32 = 2;
+
 /// A renderer with the weather that it has.
 #[derive(Debug)]
 pub struct Machine {
@@ -132,6 +135,7 @@ impl Machine {
             samples: request.samples,
             first_s: request.time_s,
             kept_frames: KEPT_FRAMES,
+            ray_spacing: RAY_SPACING,
             ..RendererOptions::default()
         };
         let renderer = Renderer::new(weather.clone(), loaded, options, device)?;

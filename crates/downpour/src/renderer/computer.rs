@@ -8,8 +8,7 @@ use downpour_render::glow::Glow;
 use downpour_render::picture::{Picture, PictureOptions, timed};
 use downpour_render::rain::{DropMasks, RefractionForm};
 use downpour_trace::frame_scene::FrameScene;
-use downpour_trace::kept::KeptPlate;
-use downpour_trace::picture::{TracedPlate, render_picture_on};
+use downpour_trace::picture::{KeptScene, render_picture_on};
 use downpour_trace::wet_ground::WetGround;
 use downpour_weather::{Loaded, Weather};
 
@@ -125,8 +124,8 @@ pub struct Computer {
 pub(super) struct Drawer {
     computer: Computer,
     falls_back: bool,
-    /// The plate of the last picture on the CPU, if it was to be kept.
-    kept: RefCell<Option<KeptPlate<TracedPlate>>>,
+    /// What the last picture on the CPU has left, if it was to be kept.
+    kept: RefCell<KeptScene>,
     #[cfg(feature = "wgpu")]
     on_gpu: Option<OnGpu>,
 }
@@ -344,7 +343,7 @@ impl Drawer {
         };
         let mut kept = self.kept.borrow_mut();
         // Pictures that keep none leave that of others alone.
-        let mut own = if kept_frames > 0 { kept.take() } else { None };
+        let mut own = if kept_frames > 0 { std::mem::take(&mut *kept) } else { KeptScene::default() };
         let (scene, eye) = (&frame_scene.data, &frame_scene.viewpoint);
         let mut picture = render_picture_on(&mut own, kept_frames, scene, eye, &drops, masks, options)?;
         if kept_frames > 0 {

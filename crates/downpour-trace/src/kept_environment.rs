@@ -1,0 +1,170 @@
+//! An environment map that stays from picture to picture: while only its eye moves, a part of its rows is traced anew for each picture,
+//! and no row is older than a few pictures. Drops show the map much smaller than it is, so that nobody can tell.
+//!
+//! A jump of the eye, another light or another size makes all rows anew.
+
+use std::ops::Range;
+
+use bytemuck::Zeroable as _;
+use downpour_render::camera::Camera;
+use downpour_render::rain::{EnvironmentFrame, RefractionForm};
+use glam::Vec3;
+
+use crate::data::{RenderFrame, SceneData};
+use crate::kept::is_lit_alike;
+
+/// Bands of rows of a map.
+const BANDS: u32 = 8;
+
+/// Bands that are traced for a picture.
+const BANDS_PER_PICTURE: usize = 2;
+
+/// Distance between the eyes of a map's rows and the picture's from which all rows are traced, m.
+const MAX_EYE_DISTANCE: f32 = 0.5;
+
+/// An environment map with what it shows; `T` holds its texels.
+#[derive(Clone, Debug)]
+pub struct KeptEnvironment<T> {
+    scene: SceneData,
+    frame: RenderFrame,
+    environment: EnvironmentFrame,
+    /// Eye of each band of rows, once it is traced.
+    eyes: Vec<Option<Vec3>>,
+    /// The band that is the next one to be traced.
+    next: usize,
+    /// The texels.
+    pub held: T,
+}
+
+impl<T> KeptEnvironment<T> {
+    /// Begins a map of a scene, of which nothing is traced yet.
+    #[must_use]
+    pub fn new(scene: &SceneData, frame: &RenderFrame, environment: &EnvironmentFrame, held: T) -> Self {
+        let count = environment.size.div_ceil(band_rows(environment.size)) as usize;
+        Self {
+            scene: scene.clone(),
+            frame: poseless(frame),
+            environment: *environment,
+            eyes: vec![None; count],
+            next: 0,
+            held,
+        }
+    }
+
+    /// True if a map that shows the same scene, with as many texels, can go on from this one.
+    #[must_use]
+    pub fn fits(&self, scene: &SceneData, frame: &RenderFrame, environment: &EnvironmentFrame) -> bool {
+        let before = &self.environment;
+        let is_alike = match environment.form {
+            // The axes of the camera do not matter.
+            RefractionForm::Direction => {
+                let EnvironmentFrame { right, up, forward, .. } = *environment;
+                EnvironmentFrame { right, up, forward, ..*before } == *environment
+            }
+            RefractionForm::Rousseau2006 => before == environment,
+        };
+        let is_near = |eye: &Option<Vec3>| {
+            eye.is_none_or(|eye| eye.distance_squared(frame.camera.eye) < MAX_EYE_DISTANCE * MAX_EYE_DISTANCE)
+        };
+        is_alike
+            && bytemuck::bytes_of(&self.frame) == bytemuck::bytes_of(&poseless(frame))
+            && self.eyes.iter().all(is_near)
+            && is_lit_alike(&self.scene, scene)
+    }
+
+    /// The rows that are to be traced for a picture of an eye: all at first, then some of those that another eye has seen.
+    pub fn next(&mut self, eye: Vec3) -> Vec<Range<u32>> {
+        let count = self.eyes.len();
+        let is_first = self.eyes.iter().all(Option::is_none);
+        let most = if is_first { count } else { BANDS_PER_PICTURE };
+        let from = self.next;
+        let old = (from..from + count).map(|band| band % count).filter(|&band| self.eyes[band] != Some(eye));
+        let mut bands: Vec<usize> = old.take(most).collect();
+        if let Some(last) = bands.last() {
+            self.next = (last + 1) % count;
+        }
+        bands.sort_unstable();
+        let rows = band_rows(self.environment.size);
+        let mut traced: Vec<Range<u32>> = Vec::new();
+        for band in bands {
+            self.eyes[band] = Some(eye);
+            let first = band as u32 * rows;
+            let end = (first + rows).min(self.environment.size);
+            match traced.last_mut() {
+                Some(last) if last.end == first => last.end = end,
+                _ => traced.push(first..end),
+            }
+        }
+        traced
+    }
+}
+
+/// Rows of a band: whole workgroups.
+fn band_rows(size: u32) -> u32 {
+    size.div_ceil(BANDS).next_multiple_of(8)
+}
+
+/// The frame without what an environment map does not depend on, and without its eye.
+fn poseless(frame: &RenderFrame) -> RenderFrame {
+    RenderFrame { camera: Camera::zeroed(), grid: 0, nearest: 0.0, ..frame.with_ray_spacing(1) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use downpour_render::camera::Viewpoint;
+    use downpour_render::rain::RainOptions;
+
+    use crate::builder::SceneBuilder;
+    use crate::sky_light::SkyLight;
+
+    fn frame_of(scene: &SceneData, eye: Vec3, forward: Vec3, seed: u64) -> RenderFrame {
+        let viewpoint = Viewpoint { eye, forward, up: Vec3::Y, fov_y: 0.8 };
+        RenderFrame::new(scene, &viewpoint, [64, 36], 1, 1, seed).expect("a frame")
+    }
+
+    #[test]
+    fn all_rows_come_round() {
+        let scene = SceneBuilder::new().build(&SkyLight::uniform([1.0; 3]));
+        let frame = frame_of(&scene, Vec3::ZERO, Vec3::NEG_Z, 1);
+        let layout = EnvironmentFrame::new(&frame.camera, &RainOptions::default());
+        let mut map = KeptEnvironment::new(&scene, &frame, &layout, ());
+        assert_eq!(map.next(Vec3::ZERO), vec![Range { start: 0, end: layout.size }]);
+        assert!(map.next(Vec3::ZERO).is_empty());
+        // Four pictures of an eye that has moved make all of it anew, and then nothing is left to do.
+        let eye = Vec3::new(0.1, 0.0, 0.0);
+        let mut rows: Vec<u32> = (0..4).flat_map(|_| map.next(eye).into_iter().flatten()).collect();
+        rows.sort_unstable();
+        assert_eq!(rows, (0..layout.size).collect::<Vec<u32>>());
+        assert!(map.next(eye).is_empty());
+        // While the eye goes on moving, each row has its turn as well.
+        let mut last = vec![0; layout.size as usize];
+        for step in 1..20u32 {
+            let eye = Vec3::new(0.1 + 0.01 * step as f32, 0.0, 0.0);
+            for row in map.next(eye).into_iter().flatten() {
+                last[row as usize] = step;
+            }
+            assert!(step < 4 || last.iter().all(|traced| step - traced < 4), "{step}: {last:?}");
+        }
+    }
+
+    #[test]
+    fn a_map_goes_on_while_only_its_eye_moves() {
+        let scene = SceneBuilder::new().build(&SkyLight::uniform([1.0; 3]));
+        let frame = frame_of(&scene, Vec3::ZERO, Vec3::NEG_Z, 1);
+        let layout = EnvironmentFrame::new(&frame.camera, &RainOptions::default());
+        let mut map = KeptEnvironment::new(&scene, &frame, &layout, ());
+        map.next(Vec3::ZERO);
+        // It turns and walks; a jump is too far.
+        for (eye, fits) in [(Vec3::ZERO, true), (Vec3::X * 0.3, true), (Vec3::X, false)] {
+            let moved = frame_of(&scene, eye, Vec3::X, 2);
+            let turned = EnvironmentFrame::new(&moved.camera, &RainOptions::default());
+            assert_eq!(map.fits(&scene, &moved, &turned), fits, "{eye}");
+        }
+        let smaller =
+            EnvironmentFrame::new(&frame.camera, &RainOptions { capture_size: 64, ..RainOptions::default() });
+        assert!(!map.fits(&scene, &frame, &smaller));
+        let brighter = SceneBuilder::new().build(&SkyLight::uniform([2.0; 3]));
+        assert!(!map.fits(&brighter, &frame, &layout));
+    }
+}
