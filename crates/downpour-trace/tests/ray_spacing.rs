@@ -91,7 +91,8 @@ fn a_yard_has_the_same_light() {
     };
     for is_wet in [false, true] {
         let at = WetnessAt { before: 1.0, kept: 1.0, since: 0.0 };
-        scene.set_wetness(is_wet.then_some(SceneWetness { at, towards: Vec3::Y, shift: Vec3::ZERO }).as_ref());
+        scene
+            .set_wetness(is_wet.then_some(SceneWetness { at, towards: Vec3::Y, shift: Vec3::ZERO }).as_ref());
         let [all, four, sixteen] = SPACINGS.map(|spacing| mean_picture(&scene, &view, spacing, 24));
         // All of it, the ground, the wall; the posts, which may have no such pixel, and have the light of what is beside them. The film
         // of wet ground finds its light in few of the rays: wider means of few of them tend to the dark.
