@@ -21,7 +21,7 @@ use downpour_render::glass::{GlassPictureDrop, GlassPictureFrame, GlassPictureLi
 use downpour_render::glow::GlowLevel;
 use downpour_render::host::{HostBlendFrame, HostEnvironmentFrame, HostPlateFrame};
 use downpour_render::rain::light::DropLightFrame;
-use downpour_render::rain::medium::MediumFrame;
+use downpour_render::rain::medium::{MediumFrame, MediumShell};
 use downpour_render::rain::profiles::ProfilesFrame;
 use downpour_render::rain::project::ProjectFrame;
 use downpour_render::rain::tiles::TilesFrame;
@@ -132,7 +132,9 @@ fn hosts() -> Vec<Host> {
         host!(GlowLevel as "GlowLevel" in &render::glow::GLOW,
             size, coarse, first, coarse_first, weight, coarse_weight, fraction, extinction, is_added, offset),
         host!(MediumFrame as "MediumFrame" in &render::medium::MEDIUM,
-            depths, rise, all, center, region, size, flatness, eye, open, columns, rows, lit, shape, pane, fog, fog_phase),
+            depths, rise, all, center, region, size, flatness, eye, open, columns, rows, lit, shape, pane, fog, fog_phase, axis, seed, across, is_grainy,
+            beside, unused, shells),
+        host!(MediumShell as "MediumShell" in &render::medium::MEDIUM, count, pixels, row, part),
         host!(ScreenDrop as "ScreenDrop" in &render::rain::STREAK,
             towards, distance, position, slope, half_extent, mask_index, area, grid, start, along, first, screen_delta, oval, depth_ratio,
             mode_phase, cycles, fraction, spread, nearest, kind, shape, profile, weights, reach, id),

@@ -90,7 +90,7 @@ pub use glint::drop_glint_right;
 use light::DropLightOptions;
 pub use list::Rain;
 pub use masks::{DIAMETER_STEP, DIAMETERS, DropMasks};
-pub use medium::{MediumOptions, PanePlane, RainMedium};
+pub use medium::{MediumGrain, MediumOptions, PanePlane, RainMedium};
 pub use profiles::StreakProfiles;
 pub use streak::ScreenDrop;
 pub use streak_lookup::StreakTable;

@@ -75,7 +75,7 @@ pub use presets::PRESETS;
 pub use puddle::{MAX_ALL_PUDDLE_CELLS, MAX_PUDDLE_CELLS, Puddle, PuddleFill, PuddleShape};
 pub use rain::{
     RAIN_BOX_M, Rain, RainBounce, RainCylinder, RainDrag, RainDropLight, RainDropShape, RainExtinction,
-    RainRefraction, RainVolume,
+    RainRefraction, RainUnresolved, RainVolume,
 };
 #[cfg(feature = "schema")]
 pub use schema::json_schema;

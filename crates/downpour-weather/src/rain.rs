@@ -200,6 +200,19 @@ pub enum RainExtinction {
     Total,
 }
 
+/// Look of the drops that are not drawn one by one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum RainUnresolved {
+    /// Streaks by chance, with the mean and the variance of these drops.
+    #[default]
+    Streaks,
+    /// Their mean everywhere.
+    Even,
+}
+
 /// Bounce of drops off surfaces, in step-by-step simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RainBounce {
@@ -276,6 +289,8 @@ pub struct Rain {
     pub drop_light: RainDropLight,
     /// Extinction by a drop of the light behind it.
     pub extinction: RainExtinction,
+    /// Look of the drops that are not drawn one by one.
+    pub unresolved: RainUnresolved,
 }
 
 impl Default for Rain {
@@ -299,6 +314,7 @@ impl Default for Rain {
             bounce: RainBounce::default(),
             drop_light: RainDropLight::default(),
             extinction: RainExtinction::default(),
+            unresolved: RainUnresolved::default(),
         }
     }
 }
@@ -328,6 +344,7 @@ pub(super) struct RainTable {
     bounce: Option<BounceTable>,
     drop_light: Option<RainDropLight>,
     extinction: Option<RainExtinction>,
+    unresolved: Option<RainUnresolved>,
 }
 
 /// A number of drops of one size.
@@ -502,6 +519,7 @@ impl Rain {
             bounce: table.bounce.map_or(default.bounce, |bounce| bounce.checked()),
             drop_light: table.drop_light.unwrap_or_default(),
             extinction: table.extinction.unwrap_or_default(),
+            unresolved: table.unresolved.unwrap_or_default(),
         };
         match table.drops {
             None => Ok((rain, rates)),

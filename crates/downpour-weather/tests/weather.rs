@@ -469,7 +469,8 @@ fn t11_keys_are_known_and_stand_once() {
         "[rain]\n  rate = 5",
         "line 2, column 3: rain.rate: unknown key \"rate\", perhaps rate_mm_h; allowed: rate_mm_h, rate_height_m, distribution, \
          gamma_shape, median_diameter_mm, seed, temperature_c, pressure_hpa, fall_speed, drop_shape, \
-         mask_model, refraction, drops, volume, box_m, cylinder, max_drops, drag, bounce, drop_light, extinction",
+         mask_model, refraction, drops, volume, box_m, cylinder, max_drops, drag, bounce, drop_light, extinction, \
+         unresolved",
     );
     says(
         "[rian]\nrate_mm_h = 5",

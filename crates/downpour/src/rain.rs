@@ -13,7 +13,7 @@ use downpour_render::gpu::{FallingOnGpu, HostPipeline, PlateOnGpu, RainOnGpu, Ra
 use downpour_render::host::{HostBlendFrame, HostEnvironmentFrame, HostPlateFrame};
 use downpour_render::light::LightSource;
 use downpour_render::rain::{
-    DropMasks, Exposure, MediumOptions, Rain as PictureRain, RainMedium, RainOptions,
+    DropMasks, Exposure, MediumGrain, MediumOptions, Rain as PictureRain, RainMedium, RainOptions,
 };
 use downpour_sim::field::{RainField, VisibleDrops};
 use downpour_sim::gpu::{FieldOnGpu, FieldPipeline, FieldSearch, ObstaclesOnGpu};
@@ -346,7 +346,10 @@ impl Rain {
     fn medium(&self, resolved: &Resolved) -> Result<RainMedium, RainError> {
         match self.medium.filter(|(of, _)| of == resolved) {
             Some((_, medium)) => Ok(medium),
-            None => Ok(RainMedium::new(&self.sizes, resolved, &self.masks, &MediumOptions::default())?),
+            None => {
+                let options = MediumOptions { grain: MediumGrain::Streaks, ..MediumOptions::default() };
+                Ok(RainMedium::new(&self.sizes, resolved, &self.masks, &options)?)
+            }
         }
     }
 

@@ -19,12 +19,12 @@ use downpour_sim::resolved::Resolved;
 use downpour_sim::shelter::Obstacles;
 use downpour_sim::simulation::Bounce;
 use downpour_sim::view::View;
-use downpour_weather::{Rain, RainDrag, RainExtinction, RainVolume, Splashes, Weather};
+use downpour_weather::{Rain, RainDrag, RainExtinction, RainUnresolved, RainVolume, Splashes, Weather};
 use downpour_wind::{UniformWind, WindField};
 use glam::DVec3;
 
 use downpour_render::glass::pane_plane;
-use downpour_render::rain::{DropMasks, MediumOptions, PanePlane, RainMedium};
+use downpour_render::rain::{DropMasks, MediumGrain, MediumOptions, PanePlane, RainMedium};
 use downpour_trace::frame_scene::FrameScene;
 use dripping::Dripping;
 pub use error::ShowerError;
@@ -373,6 +373,10 @@ impl Shower {
             velocity: (self.weather.wind.air().velocity(time_s) - DVec3::Y * fall_speed(&self.law)).as_vec3(),
             origin: frame_scene.origin,
             pane: pane_plane(&self.weather, &frame_scene.viewpoint)?,
+            grain: match self.weather.rain.unresolved {
+                RainUnresolved::Even => MediumGrain::Even,
+                _ => MediumGrain::Streaks,
+            },
         };
         let with_fog = |medium: RainMedium| medium.with_fog(self.weather.fog.as_ref(), frame_scene.origin.y);
         if self.weather.keys.rate().is_none() {

@@ -8,7 +8,8 @@ use crate::common::RNG;
 use crate::{Kernel, Module};
 
 /// Every module of this file.
-pub const MODULES: &[&Module] = &[&MEDIUM_CONSTANTS, &MEDIUM, &MEDIUM_OPEN, &MEDIUM_LIGHT, &MEDIUM_FILTER];
+pub const MODULES: &[&Module] =
+    &[&MEDIUM_CONSTANTS, &MEDIUM, &MEDIUM_STREAKS, &MEDIUM_OPEN, &MEDIUM_LIGHT, &MEDIUM_FILTER];
 
 /// Every kernel of this file.
 pub const KERNELS: &[&Kernel] = &[&MEDIUM_OPEN_KERNEL, &MEDIUM_LIGHT_KERNEL, &MEDIUM_FILTER_KERNEL];
@@ -61,6 +62,18 @@ shared_constants! {
         MEDIUM_LATTICE: u32 = 4096;
         /// Dimension of the random numbers of the grid.
         MEDIUM_RANDOM_DIMENSION: u32 = 4110;
+        /// Dimension of the random numbers of streaks, of the first shell.
+        MEDIUM_STREAKS_DIMENSION: u32 = 4140;
+        /// Number of drops from which it is not Poisson's law that is drawn from.
+        MEDIUM_STREAKS_MANY: f32 = 12.0;
+        /// The most drops of a shell over a pixel, below that number.
+        MEDIUM_STREAKS_MAX: u32 = 48;
+        /// Least chance of a number of drops.
+        MEDIUM_STREAKS_CHANCE: f32 = 1e-8;
+        /// Least part of a shell before the scene.
+        MEDIUM_STREAKS_PART: f32 = 0.05;
+        /// Sine of the angle to the axis of motion below which there are no streaks.
+        MEDIUM_STREAKS_SINE: f32 = 0.1;
     }
 }
 
@@ -69,6 +82,13 @@ pub static MEDIUM: Module = Module {
     path: "render/medium.wgsl",
     wgsl: include_str!("../../wgsl/render/medium.wgsl"),
     uses: &[&MEDIUM_CONSTANTS],
+};
+
+/// Streaks of the drops. Twin: `downpour_render::rain::medium::streaks`.
+pub static MEDIUM_STREAKS: Module = Module {
+    path: "render/medium_streaks.wgsl",
+    wgsl: include_str!("../../wgsl/render/medium_streaks.wgsl"),
+    uses: &[&MEDIUM_CONSTANTS, &MEDIUM, &RNG],
 };
 
 /// Regions of the air that are open to the rain. Twin: `downpour_render::rain::medium::open`.

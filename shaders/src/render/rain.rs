@@ -2,7 +2,7 @@
 
 use super::camera::CAMERA;
 use super::drop_light::{DROP_GLINT, DROP_LIGHT_CONSTANTS};
-use super::medium::MEDIUM;
+use super::medium::{MEDIUM, MEDIUM_STREAKS};
 use crate::atlas::ATLAS;
 use crate::common::{INVOCATION, OPS, PACKING};
 use crate::drop::oscillation::OSCILLATION;
@@ -427,6 +427,7 @@ pub static DROPS: Module = Module {
         &DROP_GLINT,
         &DROPS_GLINT,
         &MEDIUM,
+        &MEDIUM_STREAKS,
     ],
 };
 

@@ -287,16 +287,28 @@ fn drops_over(x: u32, y: u32) -> vec4f {
     let tile = (y / edge) * ((drops_frame.camera.width + edge - 1u) / edge) + x / edge;
     let index = y * drops_frame.camera.width + x;
     let scene = drops_clean[index].w;
-    let lamps = drops_layer[index];
+    let mean = drops_layer[index];
     // Mean distance of the medium's light of lamps, and its optical depth.
-    let pair = unpack2x16float(bitcast<u32>(lamps.w));
+    let pair = unpack2x16float(bitcast<u32>(mean.w));
     let direction = drops_mask_unit(camera_ray(drops_frame.camera, f32(x) + 0.5, f32(y) + 0.5));
     let span = medium_span(direction);
     let end = select(scene, MEDIUM_SKY_REACH, scene >= MEDIUM_SKY);
+    // More or fewer drops than are to be expected.
+    var depth = pair.y;
+    var lamps = mean.rgb;
+    if depth > 0.0 {
+        let drops = medium_streaks_at(direction, span, end, pair.x, drops_frame.camera.pixel_angle);
+        var rainy = 1.0;
+        if medium_frame.fog.x > 0.0 {
+            rainy = depth / (depth + medium_fog_depth(medium_frame.fog, direction.y, pair.x));
+        }
+        lamps *= 1.0 + (drops.y - 1.0) * rainy;
+        depth *= drops.x;
+    }
     // Air that rain does not reach thins the medium; evenly, as far as drops between it go.
-    let thinned = pair.y / max(medium_depth(end, span, 1.0), 1.0e-12);
+    let thinned = depth / max(medium_depth(end, span, 1.0), 1.0e-12);
     var shown_medium = vec3f(0.0);
-    if pair.y > 0.0 {
+    if depth > 0.0 {
         shown_medium = drops_medium(x, y);
     }
     var shown_fog = vec3f(0.0);
@@ -321,7 +333,7 @@ fn drops_over(x: u32, y: u32) -> vec4f {
         }
         let distance = min(drops_list[drop].distance, end);
         if behind && distance > pair.x {
-            radiance += lamps.rgb * transmittance;
+            radiance += lamps * transmittance;
             behind = false;
         }
         let here = min(exp(-medium_depth(distance, span, 1.0) * thinned), left);
@@ -335,9 +347,9 @@ fn drops_over(x: u32, y: u32) -> vec4f {
         left = here;
     }
     if behind {
-        radiance += lamps.rgb * transmittance;
+        radiance += lamps * transmittance;
     }
-    let last = min(exp(-pair.y), left);
+    let last = min(exp(-depth), left);
     let whole = medium_fog(direction, scene);
     radiance += shown_medium * (transmittance * (left - last) * (0.5 * (clear + whole)));
     radiance += shown_fog * (transmittance * (clear - whole) * (0.5 * (left + last)));

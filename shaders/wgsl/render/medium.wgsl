@@ -4,6 +4,17 @@
 // resolved, and everywhere outside the region in which drops are simulated.
 // Twin: downpour_render::rain::medium.
 
+// Unresolved drops of a shell of distances: their streaks on the picture.
+struct MediumShell {
+    // Number of drops over a pixel that would stand still; 0: there are none.
+    count: f32,
+    // Length of a streak across the ray, in pixels.
+    pixels: f32,
+    // Rows of streaks that have passed since time 0: whole ones, and a part of one.
+    row: u32,
+    part: f32,
+}
+
 struct MediumFrame {
     // Optical depth of level rays up to MEDIUM_NEAR meters, then a factor of 2^(1/3) farther each, within the region.
     depths: array<vec4f, MEDIUM_QUARTERS>,
@@ -35,6 +46,15 @@ struct MediumFrame {
     fog: vec4f,
     // Fog: width of its phase function, radians; the rest is unused.
     fog_phase: vec4f,
+    // Streaks of unresolved drops: unit vector against their motion past the eye, and the seed of their places.
+    axis: vec3f,
+    seed: u32,
+    // Two more axes; 1 if drops have streaks, 0 if the medium is even.
+    across: vec3f,
+    is_grainy: u32,
+    beside: vec3f,
+    unused: u32,
+    shells: array<MediumShell, MEDIUM_SLICES>,
 }
 
 @group(0) @binding(9) var<uniform> medium_frame: MediumFrame;

@@ -11,7 +11,9 @@ use downpour_render::gpu::RainPipeline;
 use downpour_render::light::LightSource;
 use downpour_render::picture::compose_pixel;
 use downpour_render::rain::light::{DropLightForm, DropLightOptions};
+use downpour_render::rain::medium::MediumGrain;
 use downpour_render::rain::medium::fog::medium_fog_depth;
+use downpour_render::rain::medium::streaks::{medium_streaks_column, medium_streaks_poisson};
 use downpour_render::rain::streak::streak_weight;
 use downpour_render::rain::streak_cell::{
     streak_cell_index, streak_cell_position, streak_cell_slope, streak_cell_weight,
@@ -22,7 +24,7 @@ use downpour_render::rain::{
     RefractionForm, ScreenDrop, StreakColor, StreakProfiles, StreakSamples, TemporalResponse,
 };
 use downpour_shaders::render::medium::{
-    MEDIUM, MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL,
+    MEDIUM, MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL, MEDIUM_STREAKS,
 };
 use downpour_shaders::render::rain::{
     COMPOSE, COMPOSE_KERNEL, DROPS_KERNEL, STREAK, STREAK_CELL, STREAK_LIGHT_KERNEL, STREAK_RAYS,
@@ -190,7 +192,8 @@ impl Placement {
         };
         let pane = self.has_pane.then_some(PanePlane { outward: Vec3::new(0.0, 0.28, -0.96), distance: 0.7 });
         let velocity = Vec3::new(1.0, -4.0, 0.5);
-        let options = MediumOptions { velocity, pane, ..MediumOptions::default() };
+        let grain = if matches!(self.drawn, Drawn::Box) { MediumGrain::Streaks } else { MediumGrain::Even };
+        let options = MediumOptions { velocity, pane, grain, ..MediumOptions::default() };
         let made = RainMedium::new(&rain, &resolved, masks, &options).expect("a medium");
         let fog =
             Fog { extinction_per_m: 0.05, height_m: Some(2.0), base_m: 0.0, asymmetry: 0.8, albedo: 0.9 };
@@ -544,6 +547,21 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             ],
             Tol::relative(1.0e-4, 1.0e-6, "exponentials, and their difference from 1 from 0.02 on (5e-5)"),
             |a| medium_fog_depth(Vec4::from_array(a.f32s()), a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "medium_streaks_poisson",
+            &MEDIUM_STREAKS,
+            &[Uniform(0.01, 30.0), Uniform(0.0, 0.9999999)],
+            Tol::relative(1.0e-5, 1.0e-6, "a sum of up to 48 terms of an exponential decides on a number")
+                .with_outliers(2.0e-3),
+            |a| medium_streaks_poisson(a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "medium_streaks_column",
+            &MEDIUM_STREAKS,
+            &[Uniform(-1.0, 1.0), Uniform(-1.0, 1.0), Uniform(1.0e-4, 1.0e-2)],
+            Tol::exact("quotients and a logarithm that decide on a column").with_outliers(2.0e-3),
+            |a| medium_streaks_column(Vec2::from_array(a.f32s()), a.f32()).words(),
         ),
         // Almost level rays about the height 0, where the series serves.
         FunctionCase::new(

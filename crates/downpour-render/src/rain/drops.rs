@@ -18,6 +18,7 @@ use super::drops_mask::drops_mask_unit;
 use super::drops_shade::DropsShade;
 use super::environment::EnvironmentMap;
 use super::glint::{drop_glint_right, drop_glint_rousseau};
+use super::medium::fog::medium_fog_depth;
 use super::streak::{
     ScreenDrop, StreakChord, streak_chord, streak_cover, streak_depth, streak_mask_position, streak_nearest,
     streak_time, streak_weight,
@@ -359,11 +360,21 @@ impl Buffers<'_> {
         let scene = self.clean[index][3];
         let lamps = self.medium.get(index).copied().map_or(Vec4::ZERO, Vec4::from);
         // Mean distance of the medium's light of lamps, and its optical depth.
-        let [mean, depth] = packing_unpack_half(lamps.w.to_bits());
-        let lamps = lamps.truncate();
+        let [mean, mut depth] = packing_unpack_half(lamps.w.to_bits());
+        let mut lamps = lamps.truncate();
         let direction = drops_mask_unit(self.view.frame.camera.camera_ray(x as f32 + 0.5, y as f32 + 0.5));
         let span = medium.medium_span(direction);
         let end = if scene >= MEDIUM_SKY { MEDIUM_SKY_REACH } else { scene };
+        // More or fewer drops than are to be expected.
+        if depth > 0.0 {
+            let drops = medium.medium_streaks_at(direction, span, end, mean, frame.camera.pixel_angle);
+            let mut rainy = 1.0;
+            if medium.fog[0] > 0.0 {
+                rainy = depth / (depth + medium_fog_depth(medium.fog.into(), direction.y, mean));
+            }
+            lamps *= 1.0 + (drops.y - 1.0) * rainy;
+            depth *= drops.x;
+        }
         // Air that rain does not reach thins the medium; evenly, as far as drops between it go.
         let thinned = depth / medium.medium_depth(end, span, 1.0).max(1.0e-12);
         let shown_medium = if depth > 0.0 { self.drops_medium(x, y) } else { Vec3::ZERO };

@@ -73,7 +73,11 @@ impl Rain {
             frame: DropsFrame::new(camera, &environment, masks, options),
             medium: MediumFrame {
                 lit: lamps_of(options.light.form),
-                ..MediumFrame::new(&options.medium, eye.as_vec3(), size)
+                ..MediumFrame::new(&options.medium, eye.as_vec3(), size).with_streaks(
+                    &options.medium,
+                    camera,
+                    &options.exposure,
+                )
             },
             environment,
             profiles,

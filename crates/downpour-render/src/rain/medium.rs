@@ -17,11 +17,13 @@ pub mod fog;
 mod frame;
 mod light;
 mod open;
+pub mod streaks;
 
 use downpour_drop::DropError;
 use downpour_drop::distribution::{DropSizeDistribution, ExtinctionEfficiency};
+use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_math::ops::f64 as ops;
-use downpour_shaders::render::medium::{MEDIUM_NEAR, MEDIUM_QUARTERS, MEDIUM_SKY_REACH};
+use downpour_shaders::render::medium::{MEDIUM_NEAR, MEDIUM_QUARTERS, MEDIUM_SKY_REACH, MEDIUM_SLICES};
 use downpour_shaders::render::rain::PROJECT_NO_CLASS;
 use downpour_sim::resolved::{Region, Resolved};
 use downpour_weather::Fog;
@@ -29,9 +31,10 @@ use glam::{DVec3, Vec3};
 
 use super::DropMasks;
 use super::project::project_class;
-pub use frame::MediumFrame;
+pub use frame::{MediumFrame, MediumShell};
 pub use light::MediumLight;
 pub(super) use light::lamps_of;
+use streaks::{Shell, shell_of};
 
 /// Entries of the table.
 const ENTRIES: usize = 4 * MEDIUM_QUARTERS as usize;
@@ -48,6 +51,16 @@ pub struct PanePlane {
     pub distance: f32,
 }
 
+/// Look of unresolved rain.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MediumGrain {
+    /// The mean of its drops everywhere.
+    #[default]
+    Even,
+    /// Streaks, with the mean and the variance of its drops ([`streaks`]).
+    Streaks,
+}
+
 /// Options of unresolved rain besides its drop sizes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MediumOptions {
@@ -59,16 +72,19 @@ pub struct MediumOptions {
     pub origin: DVec3,
     /// A pane before the eye.
     pub pane: Option<PanePlane>,
+    /// Look of the drops.
+    pub grain: MediumGrain,
 }
 
 impl Default for MediumOptions {
-    /// A camera's efficiency, drops that fall straight down, the world's origin.
+    /// A camera's efficiency, drops that fall straight down, the world's origin, even.
     fn default() -> Self {
         Self {
             efficiency: ExtinctionEfficiency::Camera,
             velocity: Vec3::new(0.0, -5.0, 0.0),
             origin: DVec3::ZERO,
             pane: None,
+            grain: MediumGrain::Even,
         }
     }
 }
@@ -95,6 +111,12 @@ pub struct RainMedium {
     pane: Option<PanePlane>,
     /// Fog, its base relative to the scene's origin.
     fog: Option<Fog>,
+    grain: MediumGrain,
+    /// Mean velocity of the drops, and the fall speed in it, m/s.
+    velocity: Vec3,
+    fall_speed: f32,
+    /// Unresolved drops by distance.
+    shells: [Shell; MEDIUM_SLICES as usize],
 }
 
 impl RainMedium {
@@ -115,6 +137,9 @@ impl RainMedium {
         let (mut all, mut above, mut rate_mm_h) = (0.0, 0.0, 0.0);
         let (mut weight, mut row) = (0.0, 0.0);
         let mut diameters = 0.0;
+        let speeds = TerminalSpeed::new(rain.options().fall_speed, &rain.options().air);
+        // By shell, with their thickness: squares of the outlines' areas per volume, and these times fall speeds.
+        let mut squares = [[0.0f64; 2]; MEDIUM_SLICES as usize];
         // A bin on both sides of the least diameter of the list would count as listed as a whole.
         let cut = resolved.min_diameter;
         let bins = rain.diameter_classes(BINS_PER_OCTAVE).into_iter().flat_map(|[lower, upper]| {
@@ -145,6 +170,16 @@ impl RainMedium {
                 let distance = distance_of(entry);
                 *depth += extinction * distance - level * drawn(distance);
             }
+            let square = level * level / part.number_density().max(f64::MIN_POSITIVE);
+            let speed = speeds.at(diameter).unwrap_or_default();
+            for (index, [sum, weighted]) in (0u32..).zip(&mut squares) {
+                let [begin, end] = shell_of(index).map(f64::from);
+                // What is nearer than any drop that is drawn would be no streak.
+                let beyond = |distance: f64| distance.max(near) - drawn(distance);
+                let thickness = beyond(end) - beyond(begin);
+                *sum += square * thickness;
+                *weighted += square * thickness * speed;
+            }
             let reach = f64::from(MEDIUM_SKY_REACH);
             let unresolved = level * (reach - drawn(reach));
             weight += unresolved;
@@ -161,6 +196,16 @@ impl RainMedium {
             rate_mm_h,
             pane: options.pane,
             fog: None,
+            grain: options.grain,
+            velocity: options.velocity,
+            fall_speed: speeds.at(rain.effective_diameter()).unwrap_or_default() as f32,
+            shells: std::array::from_fn(|index| {
+                let ([begin, end], [sum, weighted]) = (shell_of(index as u32), squares[index]);
+                Shell {
+                    squares: (sum / f64::from(end - begin)) as f32,
+                    speed: (weighted / sum.max(f64::MIN_POSITIVE)) as f32,
+                }
+            }),
         };
         Ok(made.with_velocity(options.velocity))
     }
@@ -168,7 +213,7 @@ impl RainMedium {
     /// The same medium of drops with another mean velocity, m/s.
     #[must_use]
     pub fn with_velocity(self, velocity: Vec3) -> Self {
-        Self { rise: (-velocity).try_normalize().unwrap_or(Vec3::Y), ..self }
+        Self { velocity, rise: (-velocity).try_normalize().unwrap_or(Vec3::Y), ..self }
     }
 
     /// Extinction of all drops, drawn or not, for level rays, 1/m.

@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use downpour_math::ops;
 use downpour_shaders::render::medium::{
     MEDIUM_BOX, MEDIUM_COLUMNS, MEDIUM_CYLINDER, MEDIUM_EVERYWHERE, MEDIUM_FAR, MEDIUM_NEAR, MEDIUM_QUARTERS,
-    MEDIUM_SPHERE,
+    MEDIUM_SLICES, MEDIUM_SPHERE,
 };
 use downpour_sim::resolved::Region;
 use glam::{Vec2, Vec3, Vec3Swizzles as _, Vec4};
@@ -49,6 +49,34 @@ pub struct MediumFrame {
     pub fog: [f32; 4],
     /// Fog: width of its phase function, radians; its asymmetry; the rest is unused.
     pub fog_phase: [f32; 4],
+    /// Streaks of unresolved drops: unit vector against their motion past the eye.
+    pub axis: [f32; 3],
+    /// Seed of their places.
+    pub seed: u32,
+    /// Another axis.
+    pub across: [f32; 3],
+    /// 1 if drops have streaks, 0 if the medium is even.
+    pub is_grainy: u32,
+    /// The third axis.
+    pub beside: [f32; 3],
+    /// Unused.
+    pub unused: u32,
+    /// Streaks by distance.
+    pub shells: [MediumShell; MEDIUM_SLICES as usize],
+}
+
+/// Unresolved drops of a shell of distances: their streaks on the picture. The same layout as `MediumShell` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct MediumShell {
+    /// Number of drops over a pixel that would stand still; 0: there are none.
+    pub count: f32,
+    /// Length of a streak across the ray, in pixels.
+    pub pixels: f32,
+    /// Whole rows of streaks that have passed since time 0.
+    pub row: u32,
+    /// Part of another row.
+    pub part: f32,
 }
 
 impl MediumFrame {
@@ -84,6 +112,13 @@ impl MediumFrame {
             pane: medium.pane.map_or([0.0; 4], |pane| pane.outward.extend(pane.distance).into()),
             fog,
             fog_phase,
+            axis: Vec3::Y.into(),
+            seed: 0,
+            across: Vec3::X.into(),
+            is_grainy: 0,
+            beside: Vec3::Z.into(),
+            unused: 0,
+            shells: [MediumShell::default(); MEDIUM_SLICES as usize],
         }
     }
 
