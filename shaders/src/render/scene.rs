@@ -71,10 +71,6 @@ shared_constants! {
         SCENE_LIGHT_AREA: u32 = 3;
         /// Largest half angle of a lamp's disk, radians: from within its sphere.
         LIGHT_MAX_SPREAD: f32 = 1.5;
-        /// Rays toward a lamp with a size that gives much.
-        SCENE_LAMP_RAYS: u32 = 2;
-        /// Fraction of a disk's area for each step of a reversed number: 2^-32.
-        SCENE_LAMP_STEP: f32 = 2.3283064e-10;
         /// Factors by which further digits of a random number become numbers of their own.
         SCENE_DIGIT: f32 = 61.0;
         /// See `SCENE_DIGIT`.
@@ -83,7 +79,7 @@ shared_constants! {
         SCENE_LATTICE: f32 = 0.7548777;
         /// See `SCENE_LATTICE`.
         SCENE_OTHER_LATTICE: f32 = 0.5698403;
-        /// Part of what all lamps would give from which one has as many rays; others have one.
+        /// Part of what all lamps would give from which one has a ray to its middle and one to a place on its disk; others have one.
         SCENE_LARGE_LAMP: f32 = 0.25;
         /// Part of the way to a lamp where things are taken to stand that throw its shadows.
         SCENE_SHADOW_PART: f32 = 0.25;

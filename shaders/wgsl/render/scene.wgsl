@@ -184,39 +184,25 @@ fn scene_glow(surface: Surface, view: vec3f, light: SceneArrival, out: vec3f) ->
     return light.irradiance * enters * (cosine * light.diffuse);
 }
 
-// Fraction of the light of a lamp that reaches a surface: the mean over `rays` to places on its disk. The last component is 1 if
-// they differ.
-fn scene_shadow(light: SceneArrival, numbers: vec2f, rays: u32) -> vec4f {
-    let tangent = scatter_tangent(light.along);
-    let other = cross(light.along, tangent);
-    var sum = vec3f(0.0);
-    var least = vec3f(1.0);
-    var most = vec3f(0.0);
-    for (var k = 0u; k < rays; k += 1u) {
-        var along = light.along;
-        var distance = light.distance;
-        if light.spread > 0.0 {
-            let offset = scene_disk(numbers, k) * light.spread;
-            let bent = along + tangent * offset.x + other * offset.y;
-            let longer = sqrt(dot(bent, bent));
-            along = bent / longer;
-            distance = select(distance * longer, distance, distance >= SCENE_FAR);
-        }
-        let visible = scene_visibility(light.start, along, distance);
-        sum += visible;
-        least = min(least, visible);
-        most = max(most, visible);
+// Fraction of the light of a lamp that reaches a surface: what a ray to a place on its disk finds.
+fn scene_shadow(light: SceneArrival, numbers: vec2f) -> vec3f {
+    var along = light.along;
+    var distance = light.distance;
+    if light.spread > 0.0 {
+        let tangent = scatter_tangent(along);
+        let offset = scene_disk(numbers) * light.spread;
+        let bent = along + tangent * offset.x + cross(along, tangent) * offset.y;
+        let longer = sqrt(dot(bent, bent));
+        along = bent / longer;
+        distance = select(distance * longer, distance, distance >= SCENE_FAR);
     }
-    let apart = most - least;
-    let differ = max(apart.x, max(apart.y, apart.z)) > SCENE_SAME_SHADOW;
-    return vec4f(sum / f32(rays), select(0.0, 1.0, differ));
+    return scene_visibility(light.start, along, distance);
 }
 
-// Place k on a unit disk.
-fn scene_disk(numbers: vec2f, k: u32) -> vec2f {
-    let inverse = f32(reverseBits(k)) * SCENE_LAMP_STEP;
-    let radius = sqrt(fract(numbers.x + inverse));
-    let angle = 6.2831853 * (numbers.y + 0.5 * f32(k));
+// Place on a unit disk.
+fn scene_disk(numbers: vec2f) -> vec2f {
+    let radius = sqrt(numbers.x);
+    let angle = 6.2831853 * numbers.y;
     return vec2f(radius * cos(angle), radius * sin(angle));
 }
 
@@ -312,20 +298,26 @@ fn scene_direct(
         // Each lamp has places of its own; they come from other digits of the number that draws a lamp.
         let digits = fract(numbers.w * vec2f(SCENE_DIGIT, SCENE_OTHER_DIGIT));
         let place_numbers = fract(digits + f32(index) * vec2f(SCENE_LATTICE, SCENE_OTHER_LATTICE));
-        // One ray to a lamp that gives little: its noise is little, too.
-        let is_large = soft > 0.0 && soft < 1.0 && arrival.spread > 0.0 && fraction > total * SCENE_LARGE_LAMP;
-        // What is narrower than some pixels is the edge of a point's shadow: it would be noise.
-        var hidden = arrival;
-        hidden.spread = select(arrival.spread, 0.0, is_first && soft <= 0.0);
-        let shadow = scene_shadow(hidden, place_numbers, select(1u, SCENE_LAMP_RAYS, is_large));
-        var fraction_of_pane = 1.0;
-        if SCENE_PANE {
-            fraction_of_pane = pane_shadow_fraction(arrival.start, arrival.along, arrival.distance, arrival.spread);
+        // On what the camera sees, shadows of a few pixels are in part those of a point: noise of the rest would be seen, and its mean over
+        // neighbors is taken of the other part. A lamp that gives little has one ray for both.
+        let is_point = is_first && soft < 1.0;
+        let both = is_point && soft > 0.0 && arrival.spread > 0.0 && fraction > total * SCENE_LARGE_LAMP;
+        var seen = vec3f(0.0);
+        var blurred = vec3f(0.0);
+        for (var ray = 0u; ray < select(1u, 2u, both); ray += 1u) {
+            var hidden = arrival;
+            hidden.spread = select(arrival.spread, 0.0, is_point && ray == 0u);
+            blurred = scene_shadow(hidden, place_numbers);
+            seen = select(seen, blurred, ray == 0u);
         }
-        let passes = shadow.xyz * (fraction_of_pane * weight);
-        result.is_soft = result.is_soft || shadow.w > 0.0;
-        result.lit += lit * passes;
-        result.glow += glow * passes;
+        let apart = abs(seen - blurred);
+        result.is_soft = result.is_soft || max(apart.x, max(apart.y, apart.z)) > SCENE_SAME_SHADOW;
+        var passes = weight;
+        if SCENE_PANE {
+            passes *= pane_shadow_fraction(arrival.start, arrival.along, arrival.distance, arrival.spread);
+        }
+        result.lit += lit * seen * passes;
+        result.glow += glow * blurred * passes;
     }
     return result;
 }

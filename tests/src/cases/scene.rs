@@ -184,10 +184,10 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "scene_disk",
             &SCENE,
-            &[fraction, fraction, Below(4)],
+            &[fraction, fraction],
             Tol::absolute(2.0e-3, "sine and cosine (2^-11 within pi, and unspecified reduction beyond)")
                 .with_outliers(1.0e-3),
-            |a| scene_disk(a.f32s(), a.u32()).to_array().words(),
+            |a| scene_disk(a.f32s()).to_array().words(),
         ),
         FunctionCase::new("scatter_tangent", &SCATTER, &[Unit3], FORMULA.with_outliers(1.0e-3), |a| {
             scatter_tangent(vec3(a)).to_array().words()

@@ -10,11 +10,10 @@ use downpour_shaders::bvh::BVH_FAR;
 use downpour_shaders::render::brdf::{BRDF_GRAZING, BRDF_MIN_DIVISOR};
 use downpour_shaders::render::puddle_water::{PUDDLE_WATER_INDEX, PUDDLE_WATER_OUTSIDE};
 use downpour_shaders::render::scene::{
-    SCENE_BLENDED, SCENE_DIGIT, SCENE_FAR, SCENE_LAMP_GLASS, SCENE_LAMP_RAYS, SCENE_LAMP_STEP,
-    SCENE_LARGE_LAMP, SCENE_LATTICE, SCENE_LAYERS, SCENE_LIGHT_AREA, SCENE_LIGHT_BODY, SCENE_MIN_COSINE,
-    SCENE_MIN_LAMP, SCENE_MIN_ROUGHNESS, SCENE_OTHER_DIGIT, SCENE_OTHER_LATTICE, SCENE_PICTURE,
-    SCENE_SAME_SHADOW, SCENE_SEEN_BODY, SCENE_SHADOW_M, SCENE_SHADOW_PART, SCENE_SHARP_PIXELS,
-    SCENE_SPOT_GLASS,
+    SCENE_BLENDED, SCENE_DIGIT, SCENE_FAR, SCENE_LAMP_GLASS, SCENE_LARGE_LAMP, SCENE_LATTICE, SCENE_LAYERS,
+    SCENE_LIGHT_AREA, SCENE_LIGHT_BODY, SCENE_MIN_COSINE, SCENE_MIN_LAMP, SCENE_MIN_ROUGHNESS,
+    SCENE_OTHER_DIGIT, SCENE_OTHER_LATTICE, SCENE_PICTURE, SCENE_SAME_SHADOW, SCENE_SEEN_BODY,
+    SCENE_SHADOW_M, SCENE_SHADOW_PART, SCENE_SHARP_PIXELS, SCENE_SPOT_GLASS,
 };
 use glam::{Vec2, Vec3};
 
@@ -214,25 +213,18 @@ impl SceneView<'_> {
         light.irradiance * enters * (cosine * light.diffuse)
     }
 
-    /// Fraction of the light of a lamp that reaches a surface: the mean over `rays` to places on its disk. Also true if they differ.
-    fn scene_shadow(&self, light: &SceneArrival, numbers: [f32; 2], rays: u32) -> (Vec3, bool) {
-        let tangent = scatter_tangent(light.along);
-        let other = light.along.cross(tangent);
-        let (mut sum, mut least, mut most) = (Vec3::ZERO, Vec3::ONE, Vec3::ZERO);
-        for k in 0..rays {
-            let (mut along, mut distance) = (light.along, light.distance);
-            if light.spread > 0.0 {
-                let offset = scene_disk(numbers, k) * light.spread;
-                let bent = along + tangent * offset.x + other * offset.y;
-                let longer = bent.dot(bent).sqrt();
-                along = bent / longer;
-                distance = if distance >= SCENE_FAR { distance } else { distance * longer };
-            }
-            let visible = self.scene_visibility(light.start, along, distance);
-            sum += visible;
-            (least, most) = (least.min(visible), most.max(visible));
+    /// Fraction of the light of a lamp that reaches a surface: what a ray to a place on its disk finds.
+    fn scene_shadow(&self, light: &SceneArrival, numbers: [f32; 2]) -> Vec3 {
+        let (mut along, mut distance) = (light.along, light.distance);
+        if light.spread > 0.0 {
+            let tangent = scatter_tangent(along);
+            let offset = scene_disk(numbers) * light.spread;
+            let bent = along + tangent * offset.x + along.cross(tangent) * offset.y;
+            let longer = bent.dot(bent).sqrt();
+            along = bent / longer;
+            distance = if distance >= SCENE_FAR { distance } else { distance * longer };
         }
-        (sum / rays as f32, (most - least).max_element() > SCENE_SAME_SHADOW)
+        self.scene_visibility(light.start, along, distance)
     }
 
     /// Light of lamps, sun, and surfaces that shine on a surface, toward the viewer.
@@ -324,20 +316,19 @@ impl SceneView<'_> {
             // Each lamp has places of its own; they come from other digits of the number that draws a lamp.
             let place_numbers = [(SCENE_DIGIT, SCENE_LATTICE), (SCENE_OTHER_DIGIT, SCENE_OTHER_LATTICE)]
                 .map(|(digits, turn)| ((numbers[3] * digits).fract() + index as f32 * turn).fract());
-            // One ray to a lamp that gives little: its noise is little, too.
-            let is_large =
-                soft > 0.0 && soft < 1.0 && arrival.spread > 0.0 && fraction > total * SCENE_LARGE_LAMP;
-            let rays = if is_large { SCENE_LAMP_RAYS } else { 1 };
-            // What is narrower than some pixels is the edge of a point's shadow: it would be noise.
-            let spread = if is_first && soft <= 0.0 { 0.0 } else { arrival.spread };
-            let hidden = SceneArrival { spread, ..arrival };
-            let (visible, is_soft) = self.scene_shadow(&hidden, place_numbers, rays);
+            // On what the camera sees, shadows of a few pixels are in part those of a point: noise of the rest would be seen, and its
+            // mean over neighbors is taken of the other part. A lamp that gives little has one ray for both.
+            let is_point = is_first && soft < 1.0;
+            let both = is_point && soft > 0.0 && arrival.spread > 0.0 && fraction > total * SCENE_LARGE_LAMP;
+            let spread = if is_point { 0.0 } else { arrival.spread };
+            let seen = self.scene_shadow(&SceneArrival { spread, ..arrival }, place_numbers);
+            let blurred = if both { self.scene_shadow(&arrival, place_numbers) } else { seen };
+            result.is_soft |= (seen - blurred).abs().max_element() > SCENE_SAME_SHADOW;
             let pane =
                 self.pane_shadow_fraction(arrival.start, arrival.along, arrival.distance, arrival.spread);
-            let passes = visible * (pane * weight);
-            result.is_soft |= is_soft;
-            result.lit += lit * passes;
-            result.glow += glow * passes;
+            let passes = pane * weight;
+            result.lit += lit * seen * passes;
+            result.glow += glow * blurred * passes;
         }
         result
     }
@@ -362,12 +353,11 @@ pub fn scene_alpha(roughness: f32, spread: f32, cosine_view: f32) -> f32 {
     (square * square + disk).max(least * least).sqrt().min(1.0)
 }
 
-/// Place `k` on a unit disk.
+/// Place on a unit disk.
 #[must_use]
-pub fn scene_disk(numbers: [f32; 2], k: u32) -> Vec2 {
-    let inverse = k.reverse_bits() as f32 * SCENE_LAMP_STEP;
-    let radius = (numbers[0] + inverse).fract().sqrt();
-    let angle = TAU * (numbers[1] + 0.5 * k as f32);
+pub fn scene_disk(numbers: [f32; 2]) -> Vec2 {
+    let radius = numbers[0].sqrt();
+    let angle = TAU * numbers[1];
     Vec2::new(radius * ops::cos(angle), radius * ops::sin(angle))
 }
 
