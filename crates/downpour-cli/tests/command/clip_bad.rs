@@ -4,12 +4,12 @@ use std::fs;
 
 use crate::child::{Downpour, Ended, downpour, names_in};
 use crate::clip::clip;
-use crate::scene_files::{model, storm, weather};
+use crate::scene_files::{NO_SPLASHES, model, storm, weather};
 
 fn render(arguments: &[&str]) -> Ended {
     let fixed = ["render", "storm.toml", "--backend", "cpu", "--samples", "1", "--size", "32x18"];
     let run = Downpour::new(&[&fixed, arguments].concat());
-    run.with_file("storm.toml", weather("")).with_file("floor.gltf", model()).run()
+    run.with_file("storm.toml", weather(NO_SPLASHES)).with_file("floor.gltf", model()).run()
 }
 
 #[test]
@@ -108,7 +108,7 @@ fn files_that_are_not_of_the_clip_are_kept() {
 #[test]
 fn an_input_is_not_a_frame() {
     let sky = downpour::render::file::write_exr(2, 1, &[[1.0; 3]; 2]).unwrap();
-    let text = weather("").replace("zenith_color = [2, 3, 4]", "file = '01.exr'");
+    let text = weather(NO_SPLASHES).replace("zenith_color = [2, 3, 4]", "file = '01.exr'");
     let run = storm(&["render", "--frames", "0..3", "--fps", "8", "-o", "%02d.exr", "--overwrite"]);
     let ended = run.with_file("01.exr", &sky).with_file("storm.toml", &text).run();
     let ended = ended.failed(2, &["01.exr is an input", "allowed: another name"]).with_one_line();
@@ -158,7 +158,7 @@ fn a_write_that_fails_leaves_what_was_whole() {
     let clip = ["--size", "64x36", "--frames", "0..2", "--fps", "8", "-o", output.to_str().unwrap()];
     let run = |limits: &[&str]| {
         let run = Downpour::limited(limits, &[&arguments[..], &clip].concat());
-        run.with_file("storm.toml", weather("")).with_file("floor.gltf", model()).run()
+        run.with_file("storm.toml", weather(NO_SPLASHES)).with_file("floor.gltf", model()).run()
     };
     // Blocks of 512 or 1024 bytes: enough for the journal, not for a frame.
     run(&["-f 6"]).failed(5, &["0.exr: File too large"]);

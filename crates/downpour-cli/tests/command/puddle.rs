@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::child::Downpour;
 use crate::clip::content;
-use crate::scene_files::{model, weather};
+use crate::scene_files::{NO_SPLASHES, model, weather};
 
 /// The storm on uneven ground, with a painted puddle.
 fn flooded(arguments: &[&str]) -> Downpour {
@@ -14,7 +14,7 @@ fn flooded(arguments: &[&str]) -> Downpour {
     let white = image::GrayImage::from_pixel(4, 2, image::Luma([255]));
     white.write_to(&mut mask, image::ImageFormat::Png).unwrap();
     Downpour::new(arguments)
-        .with_file("storm.toml", weather(puddles))
+        .with_file("storm.toml", weather(&format!("{NO_SPLASHES}{puddles}")))
         .with_file("floor.gltf", model())
         .with_file("mask.png", mask.into_inner())
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use crate::scene_files::{storm, weather};
+use crate::scene_files::{NO_SPLASHES, storm, weather};
 
 /// Waits until a file's bytes are others than these.
 fn changed(path: &Path, before: Option<&[u8]>) -> Vec<u8> {
@@ -33,7 +33,7 @@ fn the_picture_follows_the_file() {
     assert_eq!(fs::read(&picture).unwrap(), first);
     fs::write(&file, weather("[wetness]\nenabled = false\n").replace("[2, 3, 4]", "[4, 3, 2]")).unwrap();
     let second = changed(&picture, Some(&first));
-    fs::write(&file, weather("")).unwrap();
+    fs::write(&file, weather(NO_SPLASHES)).unwrap();
     assert_eq!(changed(&picture, Some(&second)), first);
     running.signal("INT");
     let ended = running.end();
