@@ -9,6 +9,7 @@ use downpour::drop::shape::{MAX_DIAMETER, MIN_DIAMETER};
 use downpour::drop::water::TEMPERATURE_RANGE_C;
 use downpour::mask::SIZES;
 use downpour::specimen::{MAX_EXPOSURE_S, SpecimenLamp};
+use downpour::trace::data::MAX_RAY_SPACING;
 use downpour::trace::frame_scene::LATEST_S;
 
 /// Minimum temperature of water, in Celsius, with a known refractive index.
@@ -194,7 +195,7 @@ pub(crate) fn sky_rays(text: &str) -> Result<u32, String> {
 
 /// Pixels between those whose rays look for light.
 pub(crate) fn ray_spacing(text: &str) -> Result<u32, String> {
-    whole(text, 1..=4)
+    whole(text, 1..=MAX_RAY_SPACING)
 }
 
 /// Seed of random numbers.

@@ -123,12 +123,25 @@ mod tests {
         RenderFrame::new(scene, &viewpoint, [64, 36], 1, 1, seed).expect("a frame")
     }
 
-    #[test]
-    fn all_rows_come_round() {
+    /// A map of an even sky, of which nothing is traced yet.
+    struct Begun {
+        scene: SceneData,
+        frame: RenderFrame,
+        layout: EnvironmentFrame,
+        map: KeptEnvironment<()>,
+    }
+
+    fn begun() -> Begun {
         let scene = SceneBuilder::new().build(&SkyLight::uniform([1.0; 3]));
         let frame = frame_of(&scene, Vec3::ZERO, Vec3::NEG_Z, 1);
         let layout = EnvironmentFrame::new(&frame.camera, &RainOptions::default());
-        let mut map = KeptEnvironment::new(&scene, &frame, &layout, ());
+        let map = KeptEnvironment::new(&scene, &frame, &layout, ());
+        Begun { scene, frame, layout, map }
+    }
+
+    #[test]
+    fn all_rows_come_round() {
+        let Begun { layout, mut map, .. } = begun();
         assert_eq!(map.next(Vec3::ZERO), vec![Range { start: 0, end: layout.size }]);
         assert!(map.next(Vec3::ZERO).is_empty());
         // Four pictures of an eye that has moved make all of it anew, and then nothing is left to do.
@@ -150,10 +163,7 @@ mod tests {
 
     #[test]
     fn a_map_goes_on_while_only_its_eye_moves() {
-        let scene = SceneBuilder::new().build(&SkyLight::uniform([1.0; 3]));
-        let frame = frame_of(&scene, Vec3::ZERO, Vec3::NEG_Z, 1);
-        let layout = EnvironmentFrame::new(&frame.camera, &RainOptions::default());
-        let mut map = KeptEnvironment::new(&scene, &frame, &layout, ());
+        let Begun { scene, frame, layout, mut map } = begun();
         map.next(Vec3::ZERO);
         // It turns and walks; a jump is too far.
         for (eye, fits) in [(Vec3::ZERO, true), (Vec3::X * 0.3, true), (Vec3::X, false)] {
