@@ -59,6 +59,7 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
         render::host::MODULES,
         render::medium::MODULES,
         render::pane_shadow::MODULES,
+        render::puddle_rings::MODULES,
         render::puddle_water::MODULES,
         render::rain::MODULES,
         render::scene::MODULES,

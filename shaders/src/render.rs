@@ -9,6 +9,7 @@ pub mod host;
 pub mod medium;
 pub mod pane_shadow;
 pub mod path;
+pub mod puddle_rings;
 pub mod puddle_water;
 pub mod rain;
 pub mod refine;

@@ -106,6 +106,10 @@ pub mod f64 {
         ln_gamma(x) = lgamma;
         /// The error function.
         erf(x) = erf;
+        /// The Bessel function of the first kind of order 0.
+        bessel_j0(x) = j0;
+        /// The Bessel function of the first kind of order 1.
+        bessel_j1(x) = j1;
     }
 }
 

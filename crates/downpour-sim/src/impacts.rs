@@ -29,6 +29,7 @@
 pub mod bounce_frame;
 #[doc(hidden)]
 pub mod bounced;
+mod crossings;
 mod places;
 #[cfg(feature = "wgpu")]
 pub(crate) mod slices;
@@ -42,6 +43,7 @@ use downpour_math::{OutOfRange, in_range};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
+pub use self::crossings::Crossing;
 use self::places::Places;
 pub use self::splashes::SplashOptions;
 use self::ways::Ways;

@@ -13,7 +13,7 @@ use downpour_sim::shelter::Obstacles;
 use downpour_sim::simulation::Bounce;
 use downpour_sim::view::View;
 use downpour_wind::{Gusts, Keyed, UniformWind, Wind, WindPart};
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 
 const RATE: f64 = 15.0;
 
@@ -372,4 +372,39 @@ fn a_narrow_picture_has_the_droplets_of_a_wide_one() {
         wide_drops.len()
     );
     assert!(expected.iter().all(|drop| narrow_drops.contains_key(&drop.id)));
+}
+
+/// Drops come through a plane where and when they would hit ground that lies in it, as many as fall.
+#[test]
+fn drops_come_through_a_plane_where_they_hit_ground_in_it() {
+    let ground = quad([[-20.0, 0.0, -20.0], [-20.0, 0.0, 20.0], [20.0, 0.0, 20.0], [20.0, 0.0, -20.0]]);
+    let bvh = Bvh::new(&ground);
+    let [low, high] = [DVec2::new(-14.0, 4.0), DVec2::new(-10.0, 9.0)];
+    for (wind, span) in [(still(), [3.1, 3.4]), (gusty(), [3.125, 3.4375])] {
+        let rain = rain(wind);
+        let crossings = rain.crossings([low, high], 0.0, span, 0.8e-3).expect("in range");
+        let expected = flux(0.8e-3, 8.0e-3) * 20.0 * (span[1] - span[0]);
+        let found = crossings.len() as f64;
+        assert!((found - expected).abs() < 4.0 * expected.sqrt(), "{found}, not {expected}");
+        let corners = [low, high].map(|corner| DVec3::new(corner.x, 0.0, corner.y));
+        let [low, high] = [corners[0] - DVec3::Y * 0.1, corners[1] + DVec3::Y * 0.1];
+        let impacts = rain.impacts(&obstacles(&bvh), low, high, span, 0.8e-3).expect("in range");
+        let impacts: BTreeMap<u64, Impact> = impacts.into_iter().map(|impact| (impact.id, impact)).collect();
+        let mut missing = 0;
+        for crossing in &crossings {
+            let Some(impact) = impacts.get(&crossing.id) else {
+                missing += 1;
+                continue;
+            };
+            assert!(crossing.position.distance(impact.position) < 1.0e-4, "{crossing:?}, {impact:?}");
+            assert!((crossing.time_s - impact.time_s).abs() < 1.0e-5, "{crossing:?}, {impact:?}");
+            assert!((crossing.velocity - impact.velocity).length() < 1.0e-3, "{crossing:?}, {impact:?}");
+        }
+        // Rounding at an end of the span, and at an edge.
+        assert!(missing <= 1 && impacts.len() <= crossings.len() + 1, "{missing} of {found}");
+    }
+    let whole = |span| rain(gusty()).crossings([low, high], 0.0, span, 2.0e-3).expect("in range").len();
+    assert_eq!(whole([3.125, 3.4375]), whole([3.125, 3.25]) + whole([3.25, 3.4375]), "spans can be cut");
+    let backwards = rain(still()).crossings([high, low], 0.0, [0.0, 1.0], 0.0);
+    assert!(backwards.is_err() && rain(still()).crossings([low, high], f64::NAN, [0.0, 1.0], 0.0).is_err());
 }

@@ -4,7 +4,7 @@
 //!    of their catchments or by a part of their depth, on
 //!    ground whose unevenness may be finer than its model ([`relief`]);
 //! 2. [`WetGround`](crate::wet_ground::WetGround): the maps of a weather, and the ripples of the rain on them, from picture
-//!    to picture;
+//!    to picture, with the [`Rings`] of single drops near the eye;
 //! 3. [`SceneData::set_puddles`](crate::data::SceneData::set_puddles): both as rows of the scene's table;
 //! 4. [`water`](crate::scene::water): what a ray finds of them, on CPU and GPU.
 
@@ -12,6 +12,7 @@ mod error;
 pub mod fill;
 mod map;
 pub mod relief;
+mod rings;
 mod ripples;
 mod rows;
 
@@ -19,6 +20,7 @@ pub use error::PuddleError;
 pub use fill::{FillLimits, Filling};
 pub use map::{Ground, PuddleGround, PuddleMap};
 pub(crate) use relief::Relief;
+pub use rings::{RainOnWater, RingRows, Rings};
 pub use ripples::{Ripples, slope_levels};
 pub(crate) use rows::RenderPuddle;
 pub use rows::{PuddleLook, PuddleRows};

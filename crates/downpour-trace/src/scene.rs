@@ -4,6 +4,7 @@
 //! the rays of the camera, [`scatter`](crate::scatter) draws those that look for the light of sky and surfaces.
 
 mod lamps;
+pub(crate) mod puddle_rings;
 #[cfg(not(feature = "parity"))]
 pub(crate) mod water;
 #[cfg(feature = "parity")]

@@ -1,13 +1,15 @@
 //! The puddles of a weather, from picture to picture.
 
+use downpour_drop::distribution::DropSizeDistribution;
 use downpour_scene::picture::{Picture, Pixels};
-use downpour_weather::{Loaded, Puddle, PuddleFill, PuddleShape, Weather};
+use downpour_sim::field::RainField;
+use downpour_weather::{Loaded, Puddle, PuddleFill, PuddleRings, PuddleShape, Weather};
 use glam::{DVec3, Vec2, Vec3};
 
 use crate::frame_scene::FrameScene;
 use crate::puddle::{
-    FillLimits, Filling, Ground, PuddleError, PuddleGround, PuddleLook, PuddleMap, PuddleRows, Relief,
-    Ripples,
+    FillLimits, Filling, Ground, PuddleError, PuddleGround, PuddleLook, PuddleMap, PuddleRows, RainOnWater,
+    Relief, RingRows, Rings, Ripples,
 };
 
 /// Mixed into the rain's seed, so that drops on water are not the drops in the air.
@@ -38,6 +40,12 @@ pub struct WetGround {
     /// Origin of the maps' positions.
     origin: DVec3,
     ripples: Ripples,
+    /// Sizes of the drops at the largest rate; `None` without rain.
+    law: Option<DropSizeDistribution>,
+    /// Made for the first rain in closed form.
+    rings: Option<Rings>,
+    /// Rings of the present picture.
+    shown: Option<RingRows>,
 }
 
 impl WetGround {
@@ -93,7 +101,8 @@ impl WetGround {
             };
             puddles.push((map, look(puddle)));
         }
-        Ok(Some(Self { weather: weather.clone(), puddles, filled, origin: frame_scene.origin, ripples }))
+        let (weather, origin) = (weather.clone(), frame_scene.origin);
+        Ok(Some(Self { weather, puddles, filled, origin, ripples, law, rings: None, shown: None }))
     }
 
     /// Steps the rain to a time in seconds; times must not decrease.
@@ -112,6 +121,35 @@ impl WetGround {
             }
         }
         self.ripples.advance(time_s)
+    }
+
+    /// Finds the rings of single drops for a picture of a scene at a time in seconds: drops of a rain in closed form have some. `None`
+    /// takes away those that are there.
+    ///
+    /// # Errors
+    /// As [`WetGround::new`]; [`PuddleError::Sim`] for an eye or a time out of range.
+    pub fn find_rings(
+        &mut self,
+        field: Option<&RainField>,
+        frame_scene: &FrameScene,
+        time_s: f64,
+    ) -> Result<(), PuddleError> {
+        self.shown = None;
+        let (Some(field), Some(heaviest)) = (field, &self.law) else { return Ok(()) };
+        if !self.puddles.iter().any(|(_, look)| look.has_rings()) {
+            return Ok(());
+        }
+        let rings = match self.rings.take() {
+            Some(rings) => rings,
+            None => Rings::new(heaviest)?,
+        };
+        let rings = self.rings.insert(rings);
+        let changes = self.weather.keys.rate().is_some();
+        let sizes = changes.then(|| self.weather.rain_at(time_s).sizes()).transpose()?;
+        let eye = frame_scene.origin + frame_scene.viewpoint.eye.as_dvec3();
+        let rain = RainOnWater { field, sizes: sizes.as_ref(), time_s, eye };
+        self.shown = Some(rings.find(&rain, &self.puddles, self.origin)?);
+        Ok(())
     }
 
     /// Holds and steps the ripples on a device from now on, beginning with level water: to be called before the first
@@ -141,6 +179,7 @@ impl WetGround {
             shape: self.ripples.shape(),
             slopes: &self.ripples.slopes(),
             shift: (self.origin - frame_scene.origin).as_vec3(),
+            rings: self.shown.as_ref(),
         });
         #[cfg(feature = "wgpu")]
         {
@@ -198,6 +237,7 @@ fn look(puddle: &Puddle) -> PuddleLook {
         influence: puddle.ripple_influence as f32,
         scattering_albedo: Vec3::from(puddle.color.map(|part| part as f32)),
         extinction: (1.0 / puddle.attenuation_length) as f32,
+        rings: puddle.rings == PuddleRings::Drops,
         ..PuddleLook::default()
     }
 }

@@ -214,6 +214,7 @@ fn puddle(look: MaterialLook, depth: f32, sky: f32, lamp: LightSource) -> SceneD
         shape: (0, 0, 1.0),
         slopes: &[],
         shift: Vec3::ZERO,
+        rings: None,
     });
     scene
 }
@@ -317,6 +318,7 @@ fn noise_of_water_has_no_pattern_and_changes_with_time() -> Outcome {
         shape: (128, 7, 0.002),
         slopes: &slope_levels(finest.collect(), 128),
         shift: Vec3::ZERO,
+        rings: None,
     });
     let (width, height) = (72usize, 56usize);
     let of_time = |k: u32| -> Result<Vec<f64>, Box<dyn std::error::Error>> {

@@ -61,6 +61,7 @@ fn flood(scene: &mut SceneData, depth: f32, look: PuddleLook) {
         shape: (0, 0, 1.0),
         slopes: &[],
         shift: Vec3::ZERO,
+        rings: None,
     });
 }
 
@@ -155,6 +156,7 @@ fn rays_end_on_the_surface_of_the_water_in_a_hollow() -> Outcome {
         shape: (0, 0, 1.0),
         slopes: &[],
         shift: Vec3::ZERO,
+        rings: None,
     });
     let eye = Vec3::new(0.3, 1.0, 1.5);
     let view = Viewpoint { eye, forward: -eye, up: Vec3::Y, fov_y: 0.2 };
@@ -189,7 +191,13 @@ fn water_is_laid_anew() {
     let once = (scene.table.len(), scene.puddles, scene.puddle_count);
     flood(&mut scene, 0.02, PuddleLook::default());
     assert_eq!((scene.table.len(), scene.puddles, scene.puddle_count), once);
-    scene.set_puddles(&PuddleRows { puddles: &[], shape: (0, 0, 1.0), slopes: &[], shift: Vec3::ZERO });
+    scene.set_puddles(&PuddleRows {
+        puddles: &[],
+        shape: (0, 0, 1.0),
+        slopes: &[],
+        shift: Vec3::ZERO,
+        rings: None,
+    });
     assert_eq!((scene.table.len(), scene.puddle_count), (dry, 0));
 }
 

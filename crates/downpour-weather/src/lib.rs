@@ -72,7 +72,7 @@ pub use load::{Loaded, Reloaded, Roots, lamps_at, load};
 pub use models::{Model, Repeat};
 pub use pane_map::PaneMap;
 pub use presets::PRESETS;
-pub use puddle::{MAX_ALL_PUDDLE_CELLS, MAX_PUDDLE_CELLS, Puddle, PuddleFill, PuddleShape};
+pub use puddle::{MAX_ALL_PUDDLE_CELLS, MAX_PUDDLE_CELLS, Puddle, PuddleFill, PuddleRings, PuddleShape};
 pub use rain::{
     RAIN_BOX_M, Rain, RainBounce, RainCylinder, RainDrag, RainDropLight, RainDropShape, RainExtinction,
     RainRefraction, RainUnresolved, RainVolume,

@@ -57,6 +57,18 @@ pub enum PuddleShape {
     Painted(RelativePath),
 }
 
+/// What ripples near the eye come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum PuddleRings {
+    /// The larger drops of the rain in closed form make rings where they fall.
+    #[default]
+    Drops,
+    /// All ripples are those of a lattice, as in Tatarchuk & Isidoro 2006.
+    Lattice,
+}
+
 /// Water within a rectangle of the ground.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Puddle {
@@ -78,6 +90,8 @@ pub struct Puddle {
     pub ripple_turn: f64,
     /// Slopes of the ripples, as a multiple of the true ones.
     pub ripple_influence: f64,
+    /// Where the ripples come from.
+    pub rings: PuddleRings,
     /// Attenuation length of the water, m: 1/e of the light is transmitted.
     pub attenuation_length: f64,
     /// Albedo of water so deep that the ground is invisible.
@@ -103,6 +117,7 @@ pub(super) struct PuddleTable {
     ripple_scale: Option<In<RippleScale>>,
     ripple_deg: Option<In<TurnDeg>>,
     ripple_influence: Option<In<Influence>>,
+    rings: Option<PuddleRings>,
     attenuation_length_m: Option<In<AttenuationM>>,
     color: Option<Exactly<In<Tint>, 3>>,
 }
@@ -162,6 +177,7 @@ impl Puddle {
             ripple_scale: table.ripple_scale.map_or(1.0, |scale| scale.0),
             ripple_turn: table.ripple_deg.map_or(0.0, |deg| deg.0.to_radians()),
             ripple_influence: table.ripple_influence.map_or(1.0, |influence| influence.0),
+            rings: table.rings.unwrap_or_default(),
             attenuation_length: table.attenuation_length_m.map_or(0.25, |m| m.0),
             color: table.color.map_or([0.12, 0.105, 0.08], Exactly::numbers),
         };

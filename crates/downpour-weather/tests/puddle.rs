@@ -3,10 +3,10 @@
 #[path = "../../downpour-scene/tests/exit_code/mod.rs"]
 mod exit_code;
 use downpour_scene::Budget;
-use downpour_weather::{PuddleFill, PuddleShape, Roots, Weather, load};
+use downpour_weather::{PuddleFill, PuddleRings, PuddleShape, Roots, Weather, load};
 use exit_code::ExitCode as _;
 
-const ALL: &str = r"
+const ALL: &str = r#"
 [[puddle]]
 position_m = [1, 0.2, -3]
 size_m = [4, 2]
@@ -21,9 +21,10 @@ cell_mm = 20
 ripple_scale = 1.5
 ripple_deg = 90
 ripple_influence = 0.5
+rings = "lattice"
 attenuation_length_m = 0.1
 color = [0.2, 0.15, 0.1]
-";
+"#;
 
 fn says(text: &str, code: u8, message: &str) {
     let error = Weather::parse("w.toml", text).expect_err(text);
@@ -38,6 +39,7 @@ fn every_key_arrives() {
     assert!((puddle.turn.to_degrees() - 30.0).abs() < 1.0e-9);
     assert!((puddle.ripple_turn.to_degrees() - 90.0).abs() < 1.0e-9);
     assert_eq!((puddle.ripple_scale, puddle.ripple_influence, puddle.attenuation_length), (1.5, 0.5, 0.1));
+    assert_eq!(puddle.rings, PuddleRings::Lattice);
     assert_eq!((puddle.depth, puddle.color), (0.04, [0.2, 0.15, 0.1]));
     let found = PuddleShape::Found {
         fill: PuddleFill::Part(0.7),

@@ -419,9 +419,11 @@ impl Renderer {
             return Ok(frame_scene);
         }
         told(Progress { what: "rain on puddles and glass", parts: [0; 2] });
+        let field = self.shower.closed_form();
         let water = self.water_at(time_s)?;
         if let Some(ground) = &mut water.ground {
             ground.advance(time_s)?;
+            ground.find_rings(field.as_deref(), &frame_scene, time_s)?;
         }
         if let Some(pane) = &mut water.pane {
             rain_on(pane, time_s, told)?;

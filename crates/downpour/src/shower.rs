@@ -187,6 +187,15 @@ impl Shower {
         matches!(self.form, Form::Closed(_))
     }
 
+    /// The rain, if it is in closed form.
+    #[must_use]
+    pub fn closed_form(&self) -> Option<Arc<RainField>> {
+        match &self.form {
+            Form::Closed(field) => Some(Arc::clone(field)),
+            Form::Stepped(_) => None,
+        }
+    }
+
     /// True if a picture of any time can be made by itself, and is the same as among others. If not, pictures of a clip are
     /// made in order of time, and each of them has to be asked for.
     #[must_use]

@@ -1,5 +1,6 @@
 //! `wgsl/render/puddle_water.wgsl`: puddles as rays meet them. Twin: `downpour_trace::scene::water`.
 
+use super::puddle_rings::PUDDLE_RINGS;
 use super::scene::DATA;
 use super::table::PUDDLE;
 use crate::Module;
@@ -53,5 +54,5 @@ shared_constants! {
 pub static PUDDLE_WATER: Module = Module {
     path: "render/puddle_water.wgsl",
     wgsl: include_str!("../../wgsl/render/puddle_water.wgsl"),
-    uses: &[&PUDDLE_WATER_CONSTANTS, &DATA, &PUDDLE, &RNG],
+    uses: &[&PUDDLE_WATER_CONSTANTS, &DATA, &PUDDLE, &PUDDLE_RINGS, &RNG],
 };

@@ -1,5 +1,6 @@
 // Puddles. Rows of a puddle in the table: middle of the map; its axes and half edges; columns, rows and first texel of it;
-// ripples; color and extinction of the water; more of the ripples. After the puddles, one row of the ripples' lattice, and texels.
+// ripples; color and extinction of the water; more of the ripples. After the puddles, one row of the ripples' lattice, those of the rings
+// of single drops, and texels.
 // Twin: downpour_trace::puddle::rows.
 
 // Water on the ground.
@@ -18,6 +19,8 @@ struct RenderPuddle {
     extinction: f32,
     // Depth of full ripples, and the puddle's own part of the lattice.
     own: vec3f,
+    // 1: the rings of single drops are shown where they are large enough.
+    rings: f32,
 }
 
 // The lattice of the ripples of all puddles.
@@ -35,9 +38,10 @@ struct RenderRipples {
 fn puddle_load(index: u32) -> RenderPuddle {
     let row = render_frame.puddles + index * PUDDLE_WATER_ROWS;
     let look = bitcast<vec4f>(render_table[row + 4u]);
+    let more = bitcast<vec4f>(render_table[row + 5u]);
     return RenderPuddle(
         bitcast<vec3f>(render_table[row].xyz), bitcast<vec4f>(render_table[row + 1u]), render_table[row + 2u].xyz,
-        bitcast<vec4f>(render_table[row + 3u]), look.rgb, look.w, bitcast<vec3f>(render_table[row + 5u].xyz),
+        bitcast<vec4f>(render_table[row + 3u]), look.rgb, look.w, more.xyz, more.w,
     );
 }
 

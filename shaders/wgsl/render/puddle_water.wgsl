@@ -90,7 +90,7 @@ fn puddle_water_piece(vertex: vec2i, offset: vec2f, first: u32, size: u32, steps
 
 // Slopes along x and z of the water's surface, and the variance of the slope within a footprint (m). One lattice serves
 // all water: pieces of it, from a different position for each vertex of a triangle mesh, are mixed so that the variance
-// stays.
+// stays. Near the eye the rings of single drops take their part of it.
 fn puddle_water_ripple(puddle: u32, position: vec3f, footprint: f32, depth: f32, open: f32) -> vec3f {
     let water = puddle_load(puddle);
     let look = water.ripples;
@@ -139,12 +139,23 @@ fn puddle_water_ripple(puddle: u32, position: vec3f, footprint: f32, depth: f32,
         spread += piece.z * weight * weight;
         square += weight * weight;
     }
-    let slope = sum * (strength / sqrt(square));
+    var lattice = 1.0;
+    var rings = vec2f(0.0);
+    if water.rings > 0.0 {
+        let drops = puddle_rings_load();
+        let shown = select(0.0, puddle_rings_shown(drops, position.xz, footprint), drops.cells.x > 0u);
+        if shown > 0.0 {
+            rings = puddle_rings_sum(drops, position.xz) * (shown * strength);
+            // The lattice keeps what rings do not have.
+            lattice = sqrt(1.0 - shown * shown * drops.part);
+        }
+    }
+    let slope = sum * (strength * lattice / sqrt(square));
     // Back to the world's axes.
     return vec3f(
-        slope.x * look.y - slope.y * look.z,
-        slope.y * look.y + slope.x * look.z,
-        spread / square * strength * strength,
+        slope.x * look.y - slope.y * look.z + rings.x,
+        slope.y * look.y + slope.x * look.z + rings.y,
+        spread / square * (strength * strength * lattice * lattice),
     );
 }
 

@@ -1,21 +1,25 @@
 //! `shaders/wgsl/render/puddle_water.wgsl` against `downpour_trace::scene::water`.
 
+use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_gpu::{Gpu, GpuError};
 use downpour_math::ops;
 use downpour_math::rng::{rng_pcg4d, rng_unit};
 use downpour_render::light::LightSource;
 use downpour_shaders::render::puddle_water::PUDDLE_WATER;
 use downpour_shaders::render::scene::TRACE_KERNEL;
+use downpour_sim::field::RainField;
 use downpour_trace::builder::{MeshPart, SceneBuilder};
 use downpour_trace::data::SceneData;
 use downpour_trace::material::MaterialLook;
-use downpour_trace::puddle::{Ground, PuddleLook, PuddleMap, PuddleRows, slope_levels};
+use downpour_trace::puddle::{
+    Ground, PuddleLook, PuddleMap, PuddleRows, RainOnWater, RingRows, Rings, slope_levels,
+};
 use downpour_trace::scene::water::{
     puddle_water_above, puddle_water_albedo, puddle_water_beneath, puddle_water_entry, puddle_water_mirrored,
     puddle_water_normal, puddle_water_reflectance, puddle_water_refracted,
 };
 use downpour_trace::sky_light::SkyLight;
-use glam::{Affine3A, Vec2, Vec3};
+use glam::{Affine3A, DVec3, Vec2, Vec3};
 
 use super::scene::{picture, scene};
 use crate::Domain::{Uniform, Unit3};
@@ -125,6 +129,26 @@ fn bank() -> (SceneData, PuddleMap) {
     (builder.build(&sky), PuddleMap { ground, size, cells })
 }
 
+/// A pool in the rain, seen from so near that the rings of single drops are large.
+fn case_rings(gpu: &Gpu) -> Result<Run, GpuError> {
+    let positions = [[-0.6, 0.0, -0.6], [-0.6, 0.0, 0.6], [0.6, 0.0, 0.6], [0.6, 0.0, -0.6]];
+    let mut builder = SceneBuilder::new();
+    let material = builder.add_material(MaterialLook { roughness: 0.7, ..MaterialLook::default() });
+    let part = MeshPart::plain(&positions, &[0, 1, 2, 0, 2, 3], material);
+    builder.add_mesh(&part, &Affine3A::IDENTITY);
+    let sky = SkyLight::new(2, 1, &[[0.4, 0.6, 1.2], [0.7, 0.6, 0.2]]);
+    let ground = Ground { middle: Vec3::ZERO, size: Vec2::splat(1.0), turn: 0.3, reach: 0.3 };
+    let cells = (0..16).map(|i| [0.0, 0.01, 0.01, if i == 5 { 0.4 } else { 1.0 }]).collect();
+    let puddles = [(PuddleMap { ground, size: [4, 4], cells }, PuddleLook::default())];
+    let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 60.0).expect("a rain");
+    let field = RainField::new(&rain, 3).expect("a rain");
+    let eye = Vec3::new(0.05, 0.19, 0.14);
+    let on_water = RainOnWater { field: &field, sizes: None, time_s: 2.3, eye: eye.as_dvec3() };
+    let rings = Rings::new(&rain).and_then(|mut rings| rings.find(&on_water, &puddles, DVec3::ZERO));
+    let rings = rings.expect("rings");
+    water_with(gpu, builder.build(&sky), &puddles, eye, 1, Some(&rings))
+}
+
 fn case(gpu: &Gpu, eye: Vec3, sky_rays: u32) -> Result<Run, GpuError> {
     water(gpu, scene(), &maps(), eye, sky_rays)
 }
@@ -137,10 +161,22 @@ fn case_bank(gpu: &Gpu) -> Result<Run, GpuError> {
 /// A picture of a scene with puddles.
 fn water(
     gpu: &Gpu,
+    scene: SceneData,
+    puddles: &[(PuddleMap, PuddleLook)],
+    eye: Vec3,
+    sky_rays: u32,
+) -> Result<Run, GpuError> {
+    water_with(gpu, scene, puddles, eye, sky_rays, None)
+}
+
+/// The same, with rings of single drops.
+fn water_with(
+    gpu: &Gpu,
     mut scene: SceneData,
     puddles: &[(PuddleMap, PuddleLook)],
     eye: Vec3,
     sky_rays: u32,
+    rings: Option<&RingRows>,
 ) -> Result<Run, GpuError> {
     let finest = (0..128 * 128u32).map(|i| {
         let [a, b, ..] = rng_pcg4d([i, 4, 5, 6]).map(|word| rng_unit(word) - 0.5);
@@ -153,6 +189,7 @@ fn water(
         shape: (128, 7, 0.01),
         slopes: &slope_levels(finest.collect(), 128),
         shift: Vec3::ZERO,
+        rings,
     });
     picture(gpu, &scene, eye, sky_rays)
 }
@@ -179,6 +216,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         case("main_trace: puddles from near", case_near),
         case("main_trace: puddles from afar", case_far),
         case("main_trace: water on a bank", case_bank),
+        case("main_trace: rings of drops on a pool", case_rings),
     ]
 }
 

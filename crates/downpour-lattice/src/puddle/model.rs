@@ -109,7 +109,23 @@ impl Default for PuddleOptions {
 }
 
 impl PuddleOptions {
-    fn check(&self) -> Result<(), LatticeError> {
+    /// The dispersion law.
+    pub(super) fn law(&self) -> Dispersion {
+        Dispersion { form: self.form, water: self.water, depth: f64::from(self.depth_m) }
+    }
+
+    /// Rate at which the amplitude of all ripples decays, 1/s, and viscosity, m^2/s.
+    pub(super) fn damping_rates(&self, law: &Dispersion) -> (f64, f64) {
+        match self.damping {
+            PuddleDamping::None => (0.0, 0.0),
+            PuddleDamping::Water => (ground_friction(law), self.water.viscosity),
+            PuddleDamping::Rates { drag_per_s, viscosity_m2_s } => {
+                (f64::from(drag_per_s), f64::from(viscosity_m2_s))
+            }
+        }
+    }
+
+    pub(super) fn check(&self) -> Result<(), LatticeError> {
         for n in self.size {
             let range = f64::from(*SIZE_RANGE.start())..=f64::from(*SIZE_RANGE.end());
             in_range(
@@ -181,7 +197,7 @@ impl Model {
             let allowed = size[0] * size[1];
             return Err(LatticeError::Cells { quantity: "the mask of land", found: land.len(), allowed });
         }
-        let law = Dispersion { form: options.form, water: options.water, depth: f64::from(options.depth_m) };
+        let law = options.law();
         let cell = f64::from(options.cell_m);
         let longest = options.max_wave_m.map_or(40.0 * cell, f64::from);
         let degree = match (options.form, options.degree) {
@@ -189,13 +205,7 @@ impl Model {
             (_, Some(degree)) => degree,
             (_, None) => degree_for(&law, cell, longest),
         };
-        let (drag, viscosity) = match options.damping {
-            PuddleDamping::None => (0.0, 0.0),
-            PuddleDamping::Water => (ground_friction(&law), options.water.viscosity),
-            PuddleDamping::Rates { drag_per_s, viscosity_m2_s } => {
-                (f64::from(drag_per_s), f64::from(viscosity_m2_s))
-            }
-        };
+        let (drag, viscosity) = options.damping_rates(&law);
         let symbol = Symbol::fit(&law, cell, degree, longest, 0.0);
         // The Courant number grows with the time step: bisect the interval to the precision of f32.
         let (mut low, mut high) = (0.0, 1.0e3);

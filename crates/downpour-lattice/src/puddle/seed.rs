@@ -22,6 +22,7 @@ use downpour_shaders::lattice::puddle::{
     PUDDLE_SEED_BUMP, PUDDLE_SEED_CRATER, PUDDLE_SEED_HEIGHT, PUDDLE_SEED_SHIFT, PUDDLE_SEED_TURN,
 };
 
+use super::dispersion::Dispersion;
 use super::lattice::Links;
 use super::model::Model;
 use crate::error::LatticeError;
@@ -153,22 +154,37 @@ fn to_cells(model: &Model, position_m: [f32; 2]) -> Result<[f32; 2], LatticeErro
     Ok(position_m.map(|v| (f64::from(v) / model.cell()) as f32))
 }
 
-fn crater(model: &Model, impact: &Impact) -> Result<PuddleSeed, LatticeError> {
-    let center = to_cells(model, impact.position_m)?;
-    let d = f64::from(impact.diameter_m);
-    let d = in_range("diameter of a drop", d, "mm", &(1.0e-6..=9.001e-3), 1.0e3, "0.001 to 9 mm")?;
-    let speed = f64::from(impact.speed_m_s);
-    let speed = in_range("speed of an impact", speed, "m/s", &(0.0..=30.0), 1.0, "0 to 30 m/s")?;
-    let water = &model.law.water;
+/// Length and depth, m, of the crater of a drop of a diameter (m) and a speed (m/s) on water of a law, of whose energy a part becomes
+/// waves; the length is at least `min_length`.
+pub(super) fn crater_shape(
+    law: &Dispersion,
+    wave_part: f64,
+    [d, speed]: [f64; 2],
+    min_length: f64,
+) -> [f64; 2] {
+    let water = &law.water;
     let weight = water.density * water.gravity;
     let energy = PI / 12.0 * water.density * d * d * d * speed * speed;
     // weight R^4 / 4 + sigma R^2 = fraction of the energy / pi
     let sigma = water.surface_tension;
     let square = 2.0 / weight * ((sigma * sigma + weight * CRATER_FRACTION * energy / PI).sqrt() - sigma);
-    let length = (square.max(0.0).sqrt() / HOLLOW).max(MIN_LENGTH_CELLS * model.cell());
+    let length = (square.max(0.0).sqrt() / HOLLOW).max(min_length);
     let stiffness = PI * (3.0 / 16.0 * weight * length * length + 0.75 * sigma);
-    let fraction = f64::from(model.options.wave_energy_fraction);
-    let amplitude = (fraction * energy / stiffness).sqrt().min(0.5 * length).min(0.5 * model.law.depth);
+    [length, (wave_part * energy / stiffness).sqrt().min(0.5 * length).min(0.5 * law.depth)]
+}
+
+/// Diameter, m, and speed, m/s, of a drop that makes a crater.
+pub(super) fn checked_drop(diameter_m: f64, speed_m_s: f64) -> Result<[f64; 2], LatticeError> {
+    let d = in_range("diameter of a drop", diameter_m, "mm", &(1.0e-6..=9.001e-3), 1.0e3, "0.001 to 9 mm")?;
+    let speed = in_range("speed of an impact", speed_m_s, "m/s", &(0.0..=30.0), 1.0, "0 to 30 m/s")?;
+    Ok([d, speed])
+}
+
+fn crater(model: &Model, impact: &Impact) -> Result<PuddleSeed, LatticeError> {
+    let center = to_cells(model, impact.position_m)?;
+    let drop = checked_drop(f64::from(impact.diameter_m), f64::from(impact.speed_m_s))?;
+    let wave_part = f64::from(model.options.wave_energy_fraction);
+    let [length, amplitude] = crater_shape(&model.law, wave_part, drop, MIN_LENGTH_CELLS * model.cell());
     let length = length / model.cell();
     let mut seed = PuddleSeed {
         center,

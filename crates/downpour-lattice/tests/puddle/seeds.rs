@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use downpour_lattice::puddle::{Impact, Puddle, PuddleBorder, PuddleOptions, Wake};
+use downpour_lattice::puddle::{DropRing, Impact, Puddle, PuddleBorder, PuddleOptions, Wake};
 
 const DROP: Impact = Impact { position_m: [0.2563, 0.2571], speed_m_s: 6.5, diameter_m: 2.0e-3 };
 
@@ -116,4 +116,44 @@ fn a_wake_needs_a_speed() {
     };
     let (slow, fast) = (radiated(0.12), radiated(0.35));
     assert!(fast > 4.0 * slow, "{slow} slow, {fast} fast");
+}
+
+/// A drop on a lattice makes the ring of the closed form: two methods that share the crater and the law of the water alone.
+#[test]
+fn a_ring_on_a_lattice_is_that_of_the_closed_form() {
+    let options = PuddleOptions {
+        size: [512, 512],
+        cell_m: 1.5e-3,
+        depth_m: 8.0e-3,
+        border: PuddleBorder::Open,
+        degree: Some(12),
+        max_wave_m: Some(0.08),
+        ..PuddleOptions::default()
+    };
+    let mut puddle = Puddle::new(&options).expect("a puddle");
+    let middle = 256.5 * 1.5e-3;
+    puddle
+        .seed(&[Impact { position_m: [middle, middle], speed_m_s: 8.1, diameter_m: 3.0e-3 }])
+        .expect("an impact");
+    let ring = DropRing::new(&options, 3.0e-3, 8.1).expect("a ring");
+    let mut time = 0.0;
+    for until in [0.05, 0.1, 0.2, 0.3] {
+        while time < until - 1.0e-6 {
+            puddle.step(2.5e-3).expect("a step");
+            time += 2.5e-3;
+        }
+        let heights = puddle.heights();
+        let (mut square, mut error) = (0.0, 0.0);
+        for cell in 0..180u16 {
+            let found = f64::from(heights[256 * 512 + 256 + usize::from(cell)]);
+            let distance = f64::from(cell) * 1.5e-3;
+            let expected = ring.height(distance, time);
+            // By area: what is far away counts as it is seen.
+            square += expected * expected * distance;
+            error += (found - expected) * (found - expected) * distance;
+        }
+        let relative = (error / square).sqrt();
+        println!("{until} s: relative difference {relative}");
+        assert!(relative < 0.12, "{until}: {relative}");
+    }
 }

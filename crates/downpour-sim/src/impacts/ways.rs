@@ -85,4 +85,26 @@ impl Ways {
         }
         None
     }
+
+    /// Where a drop first comes down through a height, m, with its velocity and the time.
+    pub(super) fn first_through(
+        &self,
+        height: f64,
+        drop: &FallingDrop,
+        speed: f64,
+    ) -> Option<(DVec3, Vec3, f64)> {
+        let mut from = drop.position - self.moved(0, speed);
+        let mut since = self.begin;
+        for cut in 1..self.cuts.len() {
+            let to = drop.position - self.moved(cut, speed);
+            let lasts = self.cuts[cut].0 - since;
+            if from.y > height && to.y <= height {
+                let part = (from.y - height) / (from.y - to.y);
+                let velocity = ((to - from) / lasts).as_vec3();
+                return Some((from.lerp(to, part).with_y(height), velocity, since + lasts * part));
+            }
+            (from, since) = (to, self.cuts[cut].0);
+        }
+        None
+    }
 }

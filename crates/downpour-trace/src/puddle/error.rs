@@ -2,6 +2,7 @@
 
 use downpour_drop::DropError;
 use downpour_lattice::LatticeError;
+use downpour_sim::SimError;
 
 /// Error of puddles.
 #[derive(Debug, Clone, thiserror::Error)]
@@ -13,6 +14,9 @@ pub enum PuddleError {
     /// The rain on it.
     #[error(transparent)]
     Rain(#[from] DropError),
+    /// The drops on it.
+    #[error(transparent)]
+    Sim(#[from] SimError),
     /// The GPU that holds the lattice.
     #[cfg(feature = "wgpu")]
     #[error(transparent)]

@@ -49,7 +49,7 @@ pub struct PuddleMap {
 
 impl Ground {
     /// The position over a part of the rectangle, 0 to 1 along its edges, at its middle's height.
-    fn position(&self, u: f32, v: f32) -> Vec3 {
+    pub(super) fn position(&self, u: f32, v: f32) -> Vec3 {
         let turn = turned(self.turn);
         let offset = turn.rotate(Vec2::new(u - 0.5, v - 0.5) * self.size);
         self.middle + Vec3::new(offset.x, 0.0, offset.y)

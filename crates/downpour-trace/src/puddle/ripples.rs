@@ -24,7 +24,7 @@ const DEPTH_M: f32 = 8.0e-3;
 const STEP_S: f64 = 5.0e-3;
 
 /// Ripples older than this have gone, s.
-const MEMORY_S: f64 = 2.5;
+pub(super) const MEMORY_S: f64 = 2.5;
 
 /// Steps with rain of one rate, where the rate changes: a quarter of a second.
 const STEPS_OF_RATE: i64 = 50;
@@ -223,7 +223,7 @@ impl Ripples {
 }
 
 /// Options of the lattice.
-fn options() -> PuddleOptions {
+pub(super) fn options() -> PuddleOptions {
     PuddleOptions {
         size: [CELLS; 2],
         cell_m: CELL_M,

@@ -1,9 +1,11 @@
 //! Puddles as rows of the scene's table. Twin of `shaders/wgsl/render/puddle.wgsl`.
 
+use downpour_shaders::render::puddle_rings::PUDDLE_RINGS_ROWS;
 use downpour_shaders::render::puddle_water::{PUDDLE_WATER_MAX_COUNT, PUDDLE_WATER_ROWS};
 use glam::{Vec2, Vec3, Vec4};
 
 use super::map::{PuddleMap, turned};
+use super::rings::RingRows;
 use crate::data::SceneData;
 
 /// Appearance of a puddle.
@@ -21,6 +23,15 @@ pub struct PuddleLook {
     pub scattering_albedo: Vec3,
     /// Fraction of light that is lost per meter of water, 1/m.
     pub extinction: f32,
+    /// True if single drops make rings near the eye; ripples that are not of the true size have none.
+    pub rings: bool,
+}
+
+impl PuddleLook {
+    /// True if single drops make rings.
+    pub(crate) fn has_rings(&self) -> bool {
+        self.rings && self.scale == 1.0 && self.influence > 0.0
+    }
 }
 
 impl Default for PuddleLook {
@@ -33,6 +44,7 @@ impl Default for PuddleLook {
             rippling_depth: 1.5e-3,
             scattering_albedo: Vec3::new(0.12, 0.105, 0.08),
             extinction: 4.0,
+            rings: true,
         }
     }
 }
@@ -48,6 +60,8 @@ pub struct PuddleRows<'a> {
     pub slopes: &'a [[f32; 4]],
     /// Added to the position of each map, m.
     pub shift: Vec3,
+    /// Rings of single drops near the eye.
+    pub rings: Option<&'a RingRows>,
 }
 
 /// Water on the ground as the shaders read it. Twin of the WGSL struct of the same name.
@@ -67,6 +81,8 @@ pub(crate) struct RenderPuddle {
     pub(crate) extinction: f32,
     /// Depth of full ripples, and the puddle's own part of the lattice.
     pub(crate) own: Vec3,
+    /// 1: the rings of single drops are shown where they are large enough.
+    pub(crate) rings: f32,
 }
 
 /// The lattice of the ripples of all puddles as the shaders read it. Twin of the WGSL struct of the same name.
@@ -97,6 +113,7 @@ impl SceneData {
             scattering_albedo: numbers(4).truncate(),
             extinction: numbers(4).w,
             own: numbers(5).truncate(),
+            rings: numbers(5).w,
         }
     }
 
@@ -139,7 +156,7 @@ impl SceneData {
     /// Adds the rows of puddles at the end of the table.
     fn add_puddles(&mut self, puddles: &[(PuddleMap, PuddleLook)], rows: &PuddleRows<'_>) {
         let words = |numbers: [f32; 4]| numbers.map(f32::to_bits);
-        let head = puddles.len() * PUDDLE_WATER_ROWS as usize + 1;
+        let head = puddles.len() * PUDDLE_WATER_ROWS as usize + 1 + PUDDLE_RINGS_ROWS as usize;
         let mut first = self.puddles + head as u32;
         for (k, (map, look)) in (0u16..).zip(puddles) {
             let middle = map.ground.middle + rows.shift;
@@ -159,16 +176,23 @@ impl SceneData {
                     look.scattering_albedo.z,
                     look.extinction,
                 ]),
-                words([look.rippling_depth, own.x, own.y, 0.0]),
+                words([look.rippling_depth, own.x, own.y, if look.has_rings() { 1.0 } else { 0.0 }]),
             ]);
             first += map.cells.len() as u32;
         }
         let (size, levels, cell) = rows.shape;
         let size = if rows.slopes.is_empty() { 0 } else { size };
         self.table.push([size, levels, first, cell.to_bits()]);
+        let behind = first + rows.slopes.len() as u32;
+        self.table.extend(
+            rows.rings.map_or([[0; 4]; PUDDLE_RINGS_ROWS as usize], |rings| rings.head(behind, rows.shift)),
+        );
         for (map, _) in puddles {
             self.table.extend(map.cells.iter().map(|&cell| words(cell)));
         }
         self.table.extend(rows.slopes.iter().map(|&slope| words(slope)));
+        if let Some(rings) = rows.rings {
+            rings.extend(&mut self.table);
+        }
     }
 }

@@ -7,7 +7,8 @@
 //! Ripples are one lattice for all water (Tatarchuk & Isidoro 2006, section 4). So that its square is not seen again and
 //! again, pieces of it are mixed over a mesh of triangles with weights whose squares sum to 1: the variance of the slopes
 //! stays (E. Heitz and F. Neyret, High-Performance By-Example Noise, 2018, for a field that is normal already). What a
-//! pixel does not resolve is a variance of the slope (M. Olano and D. Baker, LEAN Mapping, 2010).
+//! pixel does not resolve is a variance of the slope (M. Olano and D. Baker, LEAN Mapping, 2010). Near the eye the larger
+//! drops have rings of their own (`puddle_rings`), and the lattice has what is left of the variance.
 //!
 //! Diffuse ground under water is darker: light is thrown back between ground and surface, and what comes out spreads over a
 //! larger cone (J. Lekner and M. Dorf, Applied Optics 27, 1988).
@@ -157,12 +158,23 @@ impl SceneView<'_> {
             spread += piece.z * weight * weight;
             square += weight * weight;
         }
-        let slope = sum * (strength / square.sqrt());
+        let (mut lattice, mut rings) = (1.0, Vec2::ZERO);
+        if water.rings > 0.0 {
+            let drops = self.data.puddle_rings_load();
+            let place = Vec2::new(position.x, position.z);
+            let shown = if drops.cells[0] > 0 { drops.puddle_rings_shown(place, footprint) } else { 0.0 };
+            if shown > 0.0 {
+                rings = self.data.puddle_rings_sum(&drops, place) * (shown * strength);
+                // The lattice keeps what rings do not have.
+                lattice = (1.0 - shown * shown * drops.part).sqrt();
+            }
+        }
+        let slope = sum * (strength * lattice / square.sqrt());
         // Back to the world's axes.
         Vec3::new(
-            slope.x * look.y - slope.y * look.z,
-            slope.y * look.y + slope.x * look.z,
-            spread / square * strength * strength,
+            slope.x * look.y - slope.y * look.z + rings.x,
+            slope.y * look.y + slope.x * look.z + rings.y,
+            spread / square * (strength * strength * lattice * lattice),
         )
     }
 }
@@ -266,6 +278,7 @@ mod tests {
             shape: (u32::from(size), 8, 5.0e-3),
             slopes: &slope_levels(finest, usize::from(size)),
             shift: Vec3::ZERO,
+            rings: None,
         });
         let view = Viewpoint { eye: Vec3::Y, forward: Vec3::NEG_Y, up: Vec3::X, fov_y: 1.0 };
         let frame = RenderFrame::new(&scene, &view, [1, 1], 1, 0, 0).unwrap();

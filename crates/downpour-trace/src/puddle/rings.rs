@@ -1,0 +1,466 @@
+//! Rings of single drops on puddles near the eye: of which drops, where and since when, and the slopes of their waves.
+//!
+//! The rain in closed form knows which drops come through the surface of a puddle, and when ([`RainField::crossings`]): those that the
+//! picture shows falling. The larger ones near the eye make the ring of [`DropRing`] there; all the others are in the lattice of the
+//! ripples, from which the part of the larger ones is taken off. Rings are a function of time and eye alone.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use downpour_drop::distribution::DropSizeDistribution;
+use downpour_drop::fall_speed::TerminalSpeed;
+use downpour_lattice::puddle::DropRing;
+use downpour_math::ops::f64 as ops;
+use downpour_shaders::render::puddle_rings::{
+    PUDDLE_RINGS_CELL, PUDDLE_RINGS_DISTANCE, PUDDLE_RINGS_DISTANCES, PUDDLE_RINGS_LIFE, PUDDLE_RINGS_ROWS,
+    PUDDLE_RINGS_SIZES, PUDDLE_RINGS_TIME, PUDDLE_RINGS_TIMES,
+};
+use downpour_shaders::render::puddle_water::PUDDLE_WATER_MIN_DEPTH;
+use downpour_sim::field::RainField;
+use downpour_sim::impacts::Crossing;
+use glam::{DVec2, DVec3, Vec2, Vec3};
+use half::f16;
+use rayon::prelude::*;
+
+use super::map::{PuddleMap, turned};
+use super::ripples::{MEMORY_S, options};
+use super::{PuddleError, PuddleLook};
+
+/// Distance along the ground from the eye up to which drops have rings, m. Farther away no picture shows waves of two centimeters.
+const REACH_M: f64 = 10.0;
+
+/// Cells along an edge of the square around the eye: a cell more than its edge, since they begin at whole cells.
+const CELLS: usize = 81;
+
+/// Most rings of a picture.
+const MAX_RINGS: usize = 4096;
+
+/// Expected number of rings of a picture, at most: some rooms stay free for chance.
+const EXPECTED_RINGS: f64 = 3200.0;
+
+/// Expected number of rings in a cell, at most.
+const EXPECTED_IN_CELL: f64 = 24.0;
+
+/// Diameters of drops, m, and the number of classes between, for the energy of their waves.
+const DIAMETERS_M: [f64; 2] = [0.4e-3, 8.0e-3];
+const BINS: u32 = 32;
+
+/// Smallest drop with a ring, m.
+const MIN_DIAMETER_M: f64 = 1.5e-3;
+
+/// Span of time whose drops are found together, s: whole sixteenths of a second.
+const CHUNK_S: f64 = 0.25;
+
+/// Edge of the squares of the world whose drops are found together, m.
+const BLOCK_M: f64 = 4.0;
+
+/// Cells of a puddle's map that are looked at for its area, at most, along an edge.
+const AREA_SAMPLES: usize = 32;
+
+/// Drops of some diameter, with the integrals over time of their squared slope, m^2 s: of all of it, and of that of a ring.
+#[derive(Clone, Copy, Debug)]
+struct Bin {
+    diameter: f64,
+    /// m/s.
+    speed: f64,
+    /// m.
+    width: f64,
+    whole: f64,
+    ring: f64,
+}
+
+impl Bin {
+    /// Drops of a rain through a square meter in a second.
+    fn flux(&self, rain: &DropSizeDistribution) -> f64 {
+        rain.concentration(self.diameter) * self.speed * self.width
+    }
+}
+
+/// Puddle, square of the world and span of time whose drops are found together.
+type Block = (usize, [i64; 2], i64);
+
+/// Rings of the drops of a rain.
+#[derive(Debug)]
+pub struct Rings {
+    heaviest: DropSizeDistribution,
+    bins: Vec<Bin>,
+    /// Smallest drop with a ring, m.
+    smallest: f64,
+    slopes: Arc<Vec<[u32; 4]>>,
+    found: BTreeMap<Block, Vec<Crossing>>,
+}
+
+/// The rain on the water of a picture.
+#[derive(Clone, Copy, Debug)]
+pub struct RainOnWater<'a> {
+    /// The drops.
+    pub field: &'a RainField,
+    /// Their present sizes; `None`: those of the heaviest rain.
+    pub sizes: Option<&'a DropSizeDistribution>,
+    /// Time, s.
+    pub time_s: f64,
+    /// Eye, m in the world.
+    pub eye: DVec3,
+}
+
+/// Rings of a picture, as rows of the scene's table.
+#[derive(Clone, Debug)]
+pub struct RingRows {
+    slopes: Arc<Vec<[u32; 4]>>,
+    /// Number of the first ring of each cell, and that behind the last.
+    cells: Vec<u32>,
+    /// Place in the cell, age and size.
+    rings: Vec<[u32; 2]>,
+    /// Part of the mean square of the slope.
+    part: f32,
+    corner: Vec2,
+    middle: Vec2,
+}
+
+/// What a ring is in a picture: its cell, and its words.
+type Placed = (usize, [u32; 2]);
+
+impl Rings {
+    /// Makes the slopes of the rings of a rain, whose rate is never larger.
+    ///
+    /// # Errors
+    /// [`PuddleError::Rain`], [`PuddleError::Lattice`] for drops that are none.
+    pub fn new(heaviest: &DropSizeDistribution) -> Result<Self, PuddleError> {
+        let law = TerminalSpeed::new(heaviest.options().fall_speed, &heaviest.options().air);
+        let ratio = ops::pow(DIAMETERS_M[1] / DIAMETERS_M[0], 1.0 / f64::from(BINS));
+        let bin = |k: u32| {
+            let low = DIAMETERS_M[0] * ops::pow(ratio, f64::from(k));
+            let diameter = low * ratio.sqrt();
+            let speed = law.at(diameter)?;
+            let ring = DropRing::new(&options(), diameter, speed)?;
+            let integral = |until: f64, weight: &dyn Fn(f64) -> f64| {
+                let steps = 48;
+                let step = until / f64::from(steps);
+                let at = |n: u32| step * (f64::from(n) + 0.5);
+                (0..steps).map(|n| ring.mean_squared_slope(at(n)) * weight(at(n))).sum::<f64>() * step
+            };
+            let whole = integral(MEMORY_S, &|_| 1.0);
+            let ring = integral(f64::from(PUDDLE_RINGS_LIFE), &|time| fade(time) * fade(time));
+            Ok(Bin { diameter, speed, width: low * (ratio - 1.0), whole, ring })
+        };
+        let bins = (0..BINS).into_par_iter().map(bin).collect::<Result<Vec<Bin>, PuddleError>>()?;
+        let area = f64::from(PUDDLE_RINGS_CELL * PUDDLE_RINGS_CELL);
+        let smallest = smallest_of(&bins, heaviest, EXPECTED_IN_CELL / area).max(MIN_DIAMETER_M);
+        let slopes = Arc::new(slopes(&law, smallest)?);
+        Ok(Self { heaviest: heaviest.clone(), bins, smallest, slopes, found: BTreeMap::new() })
+    }
+
+    /// Finds the rings of a picture on puddles whose positions are relative to `origin`.
+    ///
+    /// # Errors
+    /// [`PuddleError::Sim`] for a time or an eye out of range.
+    pub fn find(
+        &mut self,
+        rain: &RainOnWater<'_>,
+        puddles: &[(PuddleMap, PuddleLook)],
+        origin: DVec3,
+    ) -> Result<RingRows, PuddleError> {
+        let eye = rain.eye - origin;
+        let middle = Vec2::new(eye.x as f32, eye.z as f32);
+        let with_rings = || puddles.iter().enumerate().filter(|(_, (_, look))| look.has_rings());
+        let area: f64 = with_rings().map(|(_, (map, _))| area_near(map, middle)).sum();
+        let life = f64::from(PUDDLE_RINGS_LIFE);
+        let most = EXPECTED_RINGS / (life * area.max(1.0e-6));
+        let smallest = smallest_of(&self.bins, &self.heaviest, most).max(self.smallest);
+        let wanted = with_rings().flat_map(|(k, (map, _))| blocks(k, map, origin, rain));
+        let wanted: Vec<(Block, [DVec2; 2], f64)> = wanted.collect();
+        let mut before = std::mem::take(&mut self.found);
+        let known: Vec<_> = wanted.into_iter().map(|block| (before.remove(&block.0), block)).collect();
+        let found = known.into_par_iter().map(|(known, (block, corners, height))| {
+            let span_s = [block.2, block.2 + 1].map(|k| k as f64 * CHUNK_S);
+            let find = || rain.field.crossings(corners, height, span_s, self.smallest);
+            Ok((block, known.map_or_else(find, Ok)?))
+        });
+        self.found = found.collect::<Result<_, PuddleError>>()?;
+        let corner = ((middle - REACH_M as f32) / PUDDLE_RINGS_CELL).floor() * PUDDLE_RINGS_CELL;
+        let mut placed: Vec<Placed> = Vec::new();
+        for ((puddle, ..), crossings) in &self.found {
+            let map = &puddles[*puddle].0;
+            let large = crossings.iter().filter(|crossing| f64::from(crossing.diameter) >= smallest);
+            placed.extend(
+                large.filter_map(|crossing| self.placed(crossing, map, (origin, corner), rain.time_s)),
+            );
+        }
+        placed.sort_unstable();
+        placed.truncate(MAX_RINGS);
+        let mut cells = vec![0; CELLS * CELLS + 1];
+        for (cell, _) in &placed {
+            cells[cell + 1] += 1;
+        }
+        for k in 1..cells.len() {
+            cells[k] += cells[k - 1];
+        }
+        let part = self.part(rain.sizes.unwrap_or(&self.heaviest), smallest);
+        let rings = placed.into_iter().map(|(_, words)| words).collect();
+        Ok(RingRows { slopes: Arc::clone(&self.slopes), cells, rings, part, corner, middle })
+    }
+
+    /// The ring of a drop in a picture; `None` if there is none.
+    fn placed(
+        &self,
+        crossing: &Crossing,
+        map: &PuddleMap,
+        (origin, corner): (DVec3, Vec2),
+        time_s: f64,
+    ) -> Option<Placed> {
+        let at = (crossing.position - origin).as_vec3();
+        let [rise, _] = map.surface(at)?;
+        // From the height of the map's middle to the surface.
+        let ago = rise / crossing.velocity.y.min(-0.1);
+        let at = at + crossing.velocity * ago;
+        let [_, open] = map.surface(at)?;
+        let age = ((time_s - crossing.time_s) as f32 - ago) / PUDDLE_RINGS_LIFE;
+        // Where a part of the rain arrives, a part of the drops does.
+        let chance = (crossing.id >> 40) as f32 / 16_777_216.0;
+        if !(0.0..1.0).contains(&age) || chance >= open {
+            return None;
+        }
+        let place = (Vec2::new(at.x, at.z) - corner) / PUDDLE_RINGS_CELL;
+        let cell = place.floor();
+        let [x, z] =
+            [cell.x, cell.y].map(|n| if n >= 0.0 && n < CELLS as f32 { Some(n as usize) } else { None });
+        let units = |part: f32| (part * 65536.0).clamp(0.0, 65535.0) as u32;
+        let within = place - cell;
+        let size =
+            ops::ln(f64::from(crossing.diameter) / self.smallest) / ops::ln(DIAMETERS_M[1] / self.smallest);
+        let words = [units(within.x) | units(within.y) << 16, units(age) | units(size as f32) << 16];
+        Some((z? * CELLS + x?, words))
+    }
+
+    /// Part of the mean square of the slope of a rain's ripples that rings of drops from a diameter on have.
+    fn part(&self, rain: &DropSizeDistribution, smallest: f64) -> f32 {
+        let whole: f64 = self.bins.iter().map(|bin| bin.flux(rain) * bin.whole).sum();
+        let with_rings = self.bins.iter().filter(|bin| bin.diameter >= smallest);
+        let rings: f64 = with_rings.map(|bin| bin.flux(rain) * bin.ring).sum();
+        if whole > 0.0 { (rings / whole).min(0.999) as f32 } else { 0.0 }
+    }
+}
+
+/// Smallest diameter, m, from which on no more than `most` drops come through a square meter in a second.
+fn smallest_of(bins: &[Bin], rain: &DropSizeDistribution, most: f64) -> f64 {
+    let mut flux = 0.0;
+    for bin in bins.iter().rev() {
+        flux += bin.flux(rain);
+        if flux > most {
+            return bin.diameter + 0.5 * bin.width;
+        }
+    }
+    DIAMETERS_M[0]
+}
+
+/// Part of a ring that is left some time after the impact: it ends when the next drops have long hidden it.
+fn fade(time_s: f64) -> f64 {
+    let life = f64::from(PUDDLE_RINGS_LIFE);
+    let part = ((time_s / life - 0.6) / 0.4).clamp(0.0, 1.0);
+    1.0 - part * part * (3.0 - 2.0 * part)
+}
+
+/// The table of slopes of drops from a diameter, m, on: two numbers of 16 bits in a word.
+fn slopes(law: &TerminalSpeed, smallest: f64) -> Result<Vec<[u32; 4]>, PuddleError> {
+    let ratio = DIAMETERS_M[1] / smallest;
+    let times: Vec<f64> =
+        (0..PUDDLE_RINGS_TIMES).map(|n| f64::from(n) * f64::from(PUDDLE_RINGS_TIME)).collect();
+    let of_size = |k: u32| {
+        let diameter = smallest * ops::pow(ratio, f64::from(k) / f64::from(PUDDLE_RINGS_SIZES - 1));
+        let ring = DropRing::new(&options(), diameter, law.at(diameter)?)?;
+        let count = PUDDLE_RINGS_DISTANCES as usize;
+        let mut slopes = ring.slopes(&times, f64::from(PUDDLE_RINGS_DISTANCE), count);
+        for (row, &time) in slopes.chunks_mut(count).zip(&times) {
+            row.iter_mut().for_each(|slope| *slope *= fade(time) as f32);
+        }
+        Ok(slopes)
+    };
+    let sizes = (0..PUDDLE_RINGS_SIZES).into_par_iter().map(of_size);
+    let all = sizes.collect::<Result<Vec<_>, PuddleError>>()?.concat();
+    let word = |pair: &[f32; 2]| {
+        let [low, high] = pair.map(|slope| u32::from(f16::from_f32(slope).to_bits()));
+        low | high << 16
+    };
+    let words: Vec<u32> = all.as_chunks().0.iter().map(word).collect();
+    Ok(words.as_chunks().0.to_vec())
+}
+
+/// Area of the water of a puddle within reach of an eye, m^2, from some of the cells of its map.
+fn area_near(map: &PuddleMap, middle: Vec2) -> f64 {
+    let [columns, rows] = map.size;
+    let [x_step, y_step] = map.size.map(|count| count.div_ceil(AREA_SAMPLES).max(1));
+    let area = f64::from(map.ground.size.x * map.ground.size.y);
+    let (mut wet, mut all) = (0u32, 0u32);
+    for y in (y_step / 2..rows).step_by(y_step) {
+        for x in (x_step / 2..columns).step_by(x_step) {
+            let part = |at: usize, count: usize| (at as f32 + 0.5) / count as f32;
+            let at = map.ground.position(part(x, columns), part(y, rows));
+            let is_near = Vec2::new(at.x, at.z).distance(middle) < REACH_M as f32;
+            all += 1;
+            wet += u32::from(is_near && map.cells[y * columns + x][2] >= PUDDLE_WATER_MIN_DEPTH);
+        }
+    }
+    area * f64::from(wet) / f64::from(all.max(1))
+}
+
+/// Squares of the world and spans of time in which drops come through the water of puddle `k` that make rings in a picture, each with
+/// the corners of the part that the puddle covers, and the height, m.
+fn blocks(k: usize, map: &PuddleMap, origin: DVec3, rain: &RainOnWater<'_>) -> Vec<(Block, [DVec2; 2], f64)> {
+    let half = 0.5 * map.ground.size.as_dvec2();
+    let turn = turned(map.ground.turn).as_dvec2().abs();
+    let extent = DVec2::new(half.x * turn.x + half.y * turn.y, half.x * turn.y + half.y * turn.x);
+    let middle = origin + map.ground.middle.as_dvec3();
+    let height = middle.y;
+    let (middle, eye) = (DVec2::new(middle.x, middle.z), DVec2::new(rain.eye.x, rain.eye.z));
+    // Between the middle's height and the surface the wind carries drops aside.
+    let low = (middle - extent - 0.25).max(eye - REACH_M);
+    let high = (middle + extent + 0.25).min(eye + REACH_M);
+    if !low.cmplt(high).all() {
+        return Vec::new();
+    }
+    let [first, last] = [low, high].map(|corner| (corner / BLOCK_M).floor().as_i64vec2());
+    let life = f64::from(PUDDLE_RINGS_LIFE);
+    // Drops may come to the surface a little before or after they come to the middle's height.
+    let slack = f64::from(map.ground.reach) / 4.0;
+    let spans = [rain.time_s - life - slack, rain.time_s + slack].map(|time| (time / CHUNK_S).floor() as i64);
+    let mut blocks = Vec::new();
+    for x in first.x..=last.x {
+        for z in first.y..=last.y {
+            let corner = DVec2::new(x as f64, z as f64) * BLOCK_M;
+            // All of the puddle in the block, whatever the eye sees of it.
+            let part = [corner.max(middle - extent - 0.25), (corner + BLOCK_M).min(middle + extent + 0.25)];
+            blocks.extend((spans[0]..=spans[1]).map(|span| ((k, [x, z], span), part, height)));
+        }
+    }
+    blocks
+}
+
+impl PuddleMap {
+    /// Height of the water's surface over that of the map's middle at a position (m), and the fraction of the rain that arrives there;
+    /// `None` on land.
+    fn surface(&self, position: Vec3) -> Option<[f32; 2]> {
+        let away = position - self.ground.middle;
+        let turn = turned(self.ground.turn);
+        let along = Vec2::new(away.x, away.z).dot(turn) / self.ground.size.x + 0.5;
+        let across = Vec2::new(away.x, away.z).dot(turn.perp()) / self.ground.size.y + 0.5;
+        let [columns, rows] = self.size;
+        let cell = |part: f32, count: usize| {
+            (0.0..1.0).contains(&part).then(|| ((part * count as f32) as usize).min(count - 1))
+        };
+        let index = cell(across, rows)? * columns + cell(along, columns)?;
+        let [ground, rise, depth, open] = *self.cells.get(index)?;
+        (depth >= PUDDLE_WATER_MIN_DEPTH).then_some([ground + rise, open])
+    }
+}
+
+impl RingRows {
+    /// Number of rings.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.rings.len()
+    }
+
+    /// Rows that say where the others are, which begin at row `first`; positions are shifted by so many meters.
+    pub(super) fn head(&self, first: u32, shift: Vec3) -> [[u32; 4]; PUDDLE_RINGS_ROWS as usize] {
+        let cells = first + self.slopes.len() as u32;
+        let rings = cells + self.cells.len().div_ceil(4) as u32;
+        let shift = Vec2::new(shift.x, shift.z);
+        let (corner, middle) = (self.corner + shift, self.middle + shift);
+        let part = if self.rings.is_empty() { 0.0 } else { self.part };
+        [
+            [CELLS as u32, CELLS as u32, cells, rings],
+            [first, part.to_bits(), (REACH_M as f32).to_bits(), 0],
+            [corner.x, corner.y, middle.x, middle.y].map(f32::to_bits),
+        ]
+    }
+
+    /// Adds the rows of slopes, cells and rings: as many for any number of rings.
+    pub(super) fn extend(&self, table: &mut Vec<[u32; 4]>) {
+        table.extend(self.slopes.iter());
+        let row = |words: &[u32]| std::array::from_fn(|k| words.get(k).copied().unwrap_or_default());
+        table.extend(self.cells.chunks(4).map(row));
+        let end = table.len() + MAX_RINGS / 2;
+        table.extend(self.rings.as_flattened().chunks(4).map(row));
+        table.resize(end, [0; 4]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::builder::SceneBuilder;
+    use crate::data::SceneData;
+    use crate::puddle::{Ground, PuddleRows, Ripples};
+    use crate::sky_light::SkyLight;
+    use downpour_drop::distribution::DropSizeLaw;
+
+    const SEED: u64 = 5;
+
+    fn rain(rate_mm_h: f64) -> DropSizeDistribution {
+        DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, rate_mm_h).unwrap()
+    }
+
+    /// Water of 4 x 4 m, of which a strip without rain.
+    fn pool() -> (PuddleMap, PuddleLook) {
+        let ground =
+            Ground { middle: Vec3::new(1.0, 0.2, -2.0), size: Vec2::splat(4.0), turn: 0.3, reach: 0.3 };
+        let open = |i: usize| if i % 40 < 10 { 0.0 } else { 1.0 };
+        let cells = (0..1600).map(|i| [-0.01, 0.02, 0.02, open(i)]).collect();
+        (PuddleMap { ground, size: [40, 40], cells }, PuddleLook::default())
+    }
+
+    fn scene_of(rings: &RingRows, puddles: &[(PuddleMap, PuddleLook)], slopes: &[[f32; 4]]) -> SceneData {
+        let mut scene = SceneBuilder::new().build(&SkyLight::new(1, 1, &[[1.0; 3]]));
+        scene.set_puddles(&PuddleRows {
+            puddles,
+            shape: (512, 9, 2.5e-3),
+            slopes,
+            shift: Vec3::ZERO,
+            rings: Some(rings),
+        });
+        scene
+    }
+
+    fn on_water(field: &RainField, time_s: f64) -> RainOnWater<'_> {
+        RainOnWater { field, sizes: None, time_s, eye: DVec3::new(1.0, 1.8, 0.0) }
+    }
+
+    /// Rings have the part of the mean square of the slope that is taken off the lattice.
+    #[test]
+    fn rings_have_their_part_of_the_slope() {
+        for rate in [10.0, 40.0] {
+            let law = rain(rate);
+            let field = RainField::new(&law, SEED).unwrap();
+            let mut ripples = Ripples::new(Some(&law), SEED, 3.0).unwrap();
+            let mut rings = Rings::new(&law).unwrap();
+            let puddles = [pool()];
+            let (mut of_rings, mut of_lattice, mut part) = (0.0, 0.0, 0.0);
+            for k in 0..6u32 {
+                let time_s = 3.0 + f64::from(k) * 0.7;
+                ripples.advance(time_s).unwrap();
+                let slopes = ripples.slopes();
+                let finest = &slopes[..512 * 512];
+                // Within the border that takes ripples away.
+                let inner = (64..448).flat_map(|y| finest[y * 512 + 64..y * 512 + 448].iter());
+                of_lattice += inner.map(|slope| f64::from(slope[2])).sum::<f64>() / (384.0 * 384.0);
+                let rows = rings.find(&on_water(&field, time_s), &puddles, DVec3::ZERO).unwrap();
+                let scene = scene_of(&rows, &puddles, &slopes);
+                let found = scene.puddle_rings_load();
+                part = f64::from(found.part);
+                let mut sum = 0.0;
+                for i in 0..2000u16 {
+                    let at = Vec2::new(f32::from(i % 40) * 0.05 + 0.5, f32::from(i / 40) * 0.04 - 3.0);
+                    sum += f64::from(scene.puddle_rings_sum(&found, at).length_squared());
+                }
+                of_rings += sum / 2000.0;
+                println!("{rate} mm/h: {} rings", rows.count());
+            }
+            let ratio = of_rings / of_lattice;
+            println!(
+                "{rate} mm/h: {ratio:.3} of the lattice's, {part:.3} taken off; slope {:.4}",
+                (of_lattice / 6.0).sqrt()
+            );
+            assert!((ratio / part - 1.0).abs() < 0.2, "{rate}: {ratio}, {part}");
+        }
+    }
+}
