@@ -205,7 +205,9 @@ impl Bench<'_> {
         let lamps = time(self.gpu, &pass.lamps())?;
         let streaks: Vec<Dispatch<'_>> = pass.streaks();
         let table = if streaks.is_empty() { 0.0 } else { time(self.gpu, &streaks)? };
-        let drops = lists + time(self.gpu, &[pass.drops()])?;
+        // The drops go over what is not drawn, which is to be there again each time.
+        let [light, mean] = pass.medium();
+        let drops = lists + time(self.gpu, &[light, mean, pass.drops()])?;
         Ok(Cost { binning, capture, table, lamps, drops, layer: pass.layer()? })
     }
 
