@@ -4,7 +4,7 @@
 //! picture shows falling. The larger ones near the eye make the ring of [`DropRing`] there; all the others are in the lattice of the
 //! ripples, from which the part of the larger ones is taken off. Rings are a function of time and eye alone.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
 
 use downpour_drop::distribution::DropSizeDistribution;
@@ -178,13 +178,15 @@ impl Rings {
         });
         self.found = found.collect::<Result<_, PuddleError>>()?;
         let corner = ((middle - REACH_M as f32) / PUDDLE_RINGS_CELL).floor() * PUDDLE_RINGS_CELL;
+        // Where puddles overlap, the ring is the first one's.
+        let mut known = HashSet::new();
         let mut placed: Vec<Placed> = Vec::new();
         for ((puddle, ..), crossings) in &self.found {
             let map = &puddles[*puddle].0;
-            let large = crossings.iter().filter(|crossing| f64::from(crossing.diameter) >= smallest);
-            placed.extend(
-                large.filter_map(|crossing| self.placed(crossing, map, (origin, corner), rain.time_s)),
-            );
+            for crossing in crossings.iter().filter(|crossing| f64::from(crossing.diameter) >= smallest) {
+                let ring = self.placed(crossing, map, (origin, corner), rain.time_s);
+                placed.extend(ring.filter(|_| known.insert(crossing.id)));
+            }
         }
         placed.sort_unstable();
         placed.truncate(MAX_RINGS);
@@ -461,6 +463,40 @@ mod tests {
                 (of_lattice / 6.0).sqrt()
             );
             assert!((ratio / part - 1.0).abs() < 0.2, "{rate}: {ratio}, {part}");
+        }
+    }
+
+    /// A ring is where its drop comes through the water, if rain gets there, and is once where puddles overlap.
+    #[test]
+    fn rings_are_where_drops_fall() {
+        let law = rain(20.0);
+        let field = RainField::new(&law, SEED).unwrap();
+        let mut rings = Rings::new(&law).unwrap();
+        let time_s = 4.3;
+        let rows = rings.find(&on_water(&field, time_s), &[pool()], DVec3::ZERO).unwrap();
+        let twice = rings.find(&on_water(&field, time_s), &[pool(), pool()], DVec3::ZERO).unwrap();
+        assert!(rows.count() > 500, "{}", rows.count());
+        // Over twice the area, by its maps, fewer drops have rings.
+        assert!(twice.count() <= rows.count(), "{} and {}", twice.count(), rows.count());
+        // The surface is 1 cm over the middle's height.
+        let [low, high] = [DVec2::new(-2.0, -5.0), DVec2::new(4.0, 1.0)];
+        let life = f64::from(PUDDLE_RINGS_LIFE);
+        let drops = field.crossings([low, high], 0.21, [time_s - life, time_s], 1.0e-3).unwrap();
+        let places: Vec<Vec2> =
+            drops.iter().map(|drop| Vec2::new(drop.position.x as f32, drop.position.z as f32)).collect();
+        let ground = pool().0.ground;
+        for cell in 0..CELLS * CELLS {
+            for ring in rows.cells[cell]..rows.cells[cell + 1] {
+                let [place, _] = rows.rings[ring as usize];
+                let within = Vec2::new((place & 0xffff) as f32, (place >> 16) as f32) / 65536.0;
+                let corner = Vec2::new((cell % CELLS) as f32, (cell / CELLS) as f32);
+                let at = rows.corner + (corner + within) * PUDDLE_RINGS_CELL;
+                let away = places.iter().map(|drop| drop.distance(at)).fold(f32::INFINITY, f32::min);
+                assert!(away < 1.0e-4, "{at} is {away} m from the next drop");
+                let from = at - Vec2::new(ground.middle.x, ground.middle.z);
+                let along = from.dot(turned(ground.turn)) / ground.size.x + 0.5;
+                assert!(along > 0.249, "{at} has a roof");
+            }
         }
     }
 }
