@@ -4,7 +4,11 @@
 //! the rays of the camera, [`scatter`](crate::scatter) draws those that look for the light of sky and surfaces.
 
 mod lamps;
+#[cfg(not(feature = "parity"))]
 pub(crate) mod puddle_rings;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
+pub mod puddle_rings;
 #[cfg(not(feature = "parity"))]
 pub(crate) mod water;
 #[cfg(feature = "parity")]

@@ -97,9 +97,9 @@ fn puddle_rings_sum(rings: PuddleRings, position: vec2f) -> vec2f {
     return vec2f(sum) / PUDDLE_RINGS_UNITS;
 }
 
-// How much of rings is shown at a position with a footprint, m: none where waves are smaller than the footprint, and far away.
-fn puddle_rings_shown(rings: PuddleRings, position: vec2f, footprint: f32) -> f32 {
-    let away = position - rings.middle;
-    let near = 1.0 - smoothstep(0.8 * rings.reach, rings.reach, sqrt(dot(away, away)));
+// How much of rings is shown so far from their middle with a footprint, m: none where waves are smaller than the footprint, and far
+// away.
+fn puddle_rings_shown(away: vec2f, reach: f32, footprint: f32) -> f32 {
+    let near = 1.0 - smoothstep(0.8 * reach, reach, sqrt(dot(away, away)));
     return near * (1.0 - smoothstep(PUDDLE_RINGS_FINE, PUDDLE_RINGS_COARSE, footprint));
 }

@@ -143,7 +143,7 @@ fn puddle_water_ripple(puddle: u32, position: vec3f, footprint: f32, depth: f32,
     var rings = vec2f(0.0);
     if water.rings > 0.0 {
         let drops = puddle_rings_load();
-        let shown = select(0.0, puddle_rings_shown(drops, position.xz, footprint), drops.cells.x > 0u);
+        let shown = select(0.0, puddle_rings_shown(position.xz - drops.middle, drops.reach, footprint), drops.cells.x > 0u);
         if shown > 0.0 {
             rings = puddle_rings_sum(drops, position.xz) * (shown * strength);
             // The lattice keeps what rings do not have.

@@ -5,6 +5,7 @@ use downpour_gpu::{Gpu, GpuError};
 use downpour_math::ops;
 use downpour_math::rng::{rng_pcg4d, rng_unit};
 use downpour_render::light::LightSource;
+use downpour_shaders::render::puddle_rings::PUDDLE_RINGS;
 use downpour_shaders::render::puddle_water::PUDDLE_WATER;
 use downpour_shaders::render::scene::TRACE_KERNEL;
 use downpour_sim::field::RainField;
@@ -14,6 +15,7 @@ use downpour_trace::material::MaterialLook;
 use downpour_trace::puddle::{
     Ground, PuddleLook, PuddleMap, PuddleRows, RainOnWater, RingRows, Rings, slope_levels,
 };
+use downpour_trace::scene::puddle_rings::puddle_rings_shown;
 use downpour_trace::scene::water::{
     puddle_water_above, puddle_water_albedo, puddle_water_beneath, puddle_water_entry, puddle_water_mirrored,
     puddle_water_normal, puddle_water_reflectance, puddle_water_refracted,
@@ -49,6 +51,13 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             Tol::absolute(2.0e-3, "sine and cosine (2^-11 within pi, and unspecified reduction beyond)")
                 .with_outliers(1.0e-3),
             |a| puddle_water_normal(vec3(a), a.f32(), a.f32()).to_array().words(),
+        ),
+        FunctionCase::new(
+            "puddle_rings_shown",
+            &PUDDLE_RINGS,
+            &[Uniform(-6.0, 6.0), Uniform(-6.0, 6.0), Uniform(3.0, 9.0), Uniform(0.0, 0.02)],
+            Tol::absolute(1.0e-5, "a root and two quotients (2.5 ulp each), times the slope of a cubic"),
+            |a| puddle_rings_shown(Vec2::from(a.f32s()), a.f32(), a.f32()).words(),
         ),
         FunctionCase::new("puddle_water_mirrored", &PUDDLE_WATER, &[Unit3, Unit3], DIRECTION, |a| {
             puddle_water_mirrored(vec3(a), vec3(a)).to_array().words()

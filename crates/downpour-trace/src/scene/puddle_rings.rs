@@ -126,11 +126,10 @@ impl SceneData {
     }
 }
 
-impl PuddleRings {
-    /// How much of rings is shown at a position with a footprint, m: none where waves are smaller than the footprint, and far away.
-    pub(crate) fn puddle_rings_shown(&self, position: Vec2, footprint: f32) -> f32 {
-        let away = position - self.middle;
-        let near = 1.0 - smoothstep(0.8 * self.reach, self.reach, away.dot(away).sqrt());
-        near * (1.0 - smoothstep(PUDDLE_RINGS_FINE, PUDDLE_RINGS_COARSE, footprint))
-    }
+/// How much of rings is shown so far from their middle with a footprint, m: none where waves are smaller than the footprint, and far
+/// away.
+#[must_use]
+pub fn puddle_rings_shown(away: Vec2, reach: f32, footprint: f32) -> f32 {
+    let near = 1.0 - smoothstep(0.8 * reach, reach, away.dot(away).sqrt());
+    near * (1.0 - smoothstep(PUDDLE_RINGS_FINE, PUDDLE_RINGS_COARSE, footprint))
 }

@@ -22,6 +22,7 @@ use downpour_shaders::render::puddle_water::{
 use glam::{Vec2, Vec3, Vec4};
 
 use super::SceneView;
+use super::puddle_rings::puddle_rings_shown;
 use crate::puddle::RenderPuddle;
 
 /// Water over a position.
@@ -162,7 +163,8 @@ impl SceneView<'_> {
         if water.rings > 0.0 {
             let drops = self.data.puddle_rings_load();
             let place = Vec2::new(position.x, position.z);
-            let shown = if drops.cells[0] > 0 { drops.puddle_rings_shown(place, footprint) } else { 0.0 };
+            let shown = puddle_rings_shown(place - drops.middle, drops.reach, footprint);
+            let shown = if drops.cells[0] > 0 { shown } else { 0.0 };
             if shown > 0.0 {
                 rings = self.data.puddle_rings_sum(&drops, place) * (shown * strength);
                 // The lattice keeps what rings do not have.
