@@ -14,7 +14,6 @@ const CUT_S: f64 = 1.0 / 16.0;
 
 /// Paths of drops in a span of time.
 pub(super) struct Ways {
-    begin: f64,
     end: f64,
     /// Times from the beginning to the end, and the drift of drops up to them.
     cuts: Vec<(f64, Drift)>,
@@ -29,7 +28,7 @@ impl Ways {
         }
         times.push(end);
         let cuts = times.into_iter().map(|time| (time, Drift::new(&field.wind, time))).collect();
-        Self { begin, end, cuts }
+        Self { end, cuts }
     }
 
     /// Drift of drops up to the end.
@@ -68,22 +67,12 @@ impl Ways {
         drop: &FallingDrop,
         speed: f64,
     ) -> Option<(Hit, Vec3, Vec3, f64)> {
-        let here = drop.position - obstacles.origin;
-        let mut from = here - self.moved(0, speed);
-        let mut since = self.begin;
-        for cut in 1..self.cuts.len() {
-            let to = here - self.moved(cut, speed);
-            let lasts = self.cuts[cut].0 - since;
-            if lasts > 0.0 {
-                let velocity = ((to - from) / lasts).as_vec3();
-                if let Some(hit) = met(obstacles, from.as_vec3(), velocity, lasts as f32) {
-                    let time_s = since + f64::from(hit.distance);
-                    return Some((hit, from.as_vec3(), velocity, time_s));
-                }
-            }
-            (from, since) = (to, self.cuts[cut].0);
-        }
-        None
+        self.parts(drop.position - obstacles.origin, speed).find_map(|([from, to], since, lasts)| {
+            let velocity = ((to - from) / lasts).as_vec3();
+            let hit = met(obstacles, from.as_vec3(), velocity, lasts as f32)?;
+            let time_s = since + f64::from(hit.distance);
+            Some((hit, from.as_vec3(), velocity, time_s))
+        })
     }
 
     /// Where a drop first comes down through a height, m, with its velocity and the time.
@@ -93,18 +82,24 @@ impl Ways {
         drop: &FallingDrop,
         speed: f64,
     ) -> Option<(DVec3, Vec3, f64)> {
-        let mut from = drop.position - self.moved(0, speed);
-        let mut since = self.begin;
-        for cut in 1..self.cuts.len() {
-            let to = drop.position - self.moved(cut, speed);
-            let lasts = self.cuts[cut].0 - since;
-            if from.y > height && to.y <= height {
-                let part = (from.y - height) / (from.y - to.y);
-                let velocity = ((to - from) / lasts).as_vec3();
-                return Some((from.lerp(to, part).with_y(height), velocity, since + lasts * part));
+        self.parts(drop.position, speed).find_map(|([from, to], since, lasts)| {
+            if from.y <= height || to.y > height {
+                return None;
             }
-            (from, since) = (to, self.cuts[cut].0);
-        }
-        None
+            let part = (from.y - height) / (from.y - to.y);
+            let velocity = ((to - from) / lasts).as_vec3();
+            Some((from.lerp(to, part).with_y(height), velocity, since + lasts * part))
+        })
+    }
+
+    /// Straight parts of the way of a drop of a speed to a position at the end: ends, m, and when and for how long, s.
+    fn parts(&self, end: DVec3, speed: f64) -> impl Iterator<Item = ([DVec3; 2], f64, f64)> {
+        let mut from = end - self.moved(0, speed);
+        let parts = self.cuts.windows(2).enumerate().map(move |(cut, pair)| {
+            let to = end - self.moved(cut + 1, speed);
+            let ends = [std::mem::replace(&mut from, to), to];
+            (ends, pair[0].0, pair[1].0 - pair[0].0)
+        });
+        parts.filter(|(.., lasts)| *lasts > 0.0)
     }
 }

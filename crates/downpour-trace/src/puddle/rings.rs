@@ -117,6 +117,19 @@ pub struct RingRows {
     middle: Vec2,
 }
 
+/// Where rings of a puddle are placed in a picture.
+struct Placing<'a> {
+    map: &'a PuddleMap,
+    /// Of its map.
+    turn: Vec2,
+    /// Of the positions of maps, m in the world.
+    origin: DVec3,
+    /// Of the cells, m from there.
+    corner: Vec2,
+    /// The eye, m from there.
+    middle: Vec2,
+}
+
 /// What a ring is in a picture: its cell, and its words.
 type Placed = (usize, [u32; 2]);
 
@@ -183,8 +196,9 @@ impl Rings {
         let mut placed: Vec<Placed> = Vec::new();
         for ((puddle, ..), crossings) in &self.found {
             let map = &puddles[*puddle].0;
+            let placing = Placing { map, turn: turned(map.ground.turn), origin, corner, middle };
             for crossing in crossings.iter().filter(|crossing| f64::from(crossing.diameter) >= smallest) {
-                let ring = self.placed(crossing, map, (origin, corner), rain.time_s);
+                let ring = self.placed(crossing, &placing, rain.time_s);
                 placed.extend(ring.filter(|_| known.insert(crossing.id)));
             }
         }
@@ -203,26 +217,24 @@ impl Rings {
     }
 
     /// The ring of a drop in a picture; `None` if there is none.
-    fn placed(
-        &self,
-        crossing: &Crossing,
-        map: &PuddleMap,
-        (origin, corner): (DVec3, Vec2),
-        time_s: f64,
-    ) -> Option<Placed> {
+    fn placed(&self, crossing: &Crossing, placing: &Placing<'_>, time_s: f64) -> Option<Placed> {
+        let Placing { map, turn, origin, corner, middle } = *placing;
         let at = (crossing.position - origin).as_vec3();
-        let [rise, _] = map.surface(at)?;
+        let [rise, _] = map.surface(turn, at)?;
         // From the height of the map's middle to the surface.
         let ago = rise / crossing.velocity.y.min(-0.1);
         let at = at + crossing.velocity * ago;
-        let [_, open] = map.surface(at)?;
+        let [_, open] = map.surface(turn, at)?;
         let age = ((time_s - crossing.time_s) as f32 - ago) / PUDDLE_RINGS_LIFE;
         // Where a part of the rain arrives, a part of the drops does.
         let chance = (crossing.id >> 40) as f32 / 16_777_216.0;
-        if !(0.0..1.0).contains(&age) || chance >= open {
+        let on_ground = Vec2::new(at.x, at.z);
+        // No ring is wider than a cell.
+        let is_near = on_ground.distance(middle) < REACH_M as f32 + PUDDLE_RINGS_CELL;
+        if !is_near || !(0.0..1.0).contains(&age) || chance >= open {
             return None;
         }
-        let place = (Vec2::new(at.x, at.z) - corner) / PUDDLE_RINGS_CELL;
+        let place = (on_ground - corner) / PUDDLE_RINGS_CELL;
         let cell = place.floor();
         let [x, z] =
             [cell.x, cell.y].map(|n| if n >= 0.0 && n < CELLS as f32 { Some(n as usize) } else { None });
@@ -295,11 +307,13 @@ fn area_near(map: &PuddleMap, middle: Vec2) -> f64 {
     let (mut wet, mut all) = (0u32, 0u32);
     for y in (y_step / 2..rows).step_by(y_step) {
         for x in (x_step / 2..columns).step_by(x_step) {
+            all += 1;
+            if map.cells[y * columns + x][2] < PUDDLE_WATER_MIN_DEPTH {
+                continue;
+            }
             let part = |at: usize, count: usize| (at as f32 + 0.5) / count as f32;
             let at = map.ground.position(part(x, columns), part(y, rows));
-            let is_near = Vec2::new(at.x, at.z).distance(middle) < REACH_M as f32;
-            all += 1;
-            wet += u32::from(is_near && map.cells[y * columns + x][2] >= PUDDLE_WATER_MIN_DEPTH);
+            wet += u32::from(Vec2::new(at.x, at.z).distance(middle) < REACH_M as f32);
         }
     }
     area * f64::from(wet) / f64::from(all.max(1))
@@ -339,10 +353,9 @@ fn blocks(k: usize, map: &PuddleMap, origin: DVec3, rain: &RainOnWater<'_>) -> V
 
 impl PuddleMap {
     /// Height of the water's surface over that of the map's middle at a position (m), and the fraction of the rain that arrives there;
-    /// `None` on land.
-    fn surface(&self, position: Vec3) -> Option<[f32; 2]> {
+    /// `None` on land. `turn` is the map's.
+    fn surface(&self, turn: Vec2, position: Vec3) -> Option<[f32; 2]> {
         let away = position - self.ground.middle;
-        let turn = turned(self.ground.turn);
         let along = Vec2::new(away.x, away.z).dot(turn) / self.ground.size.x + 0.5;
         let across = Vec2::new(away.x, away.z).dot(turn.perp()) / self.ground.size.y + 0.5;
         let [columns, rows] = self.size;
@@ -368,10 +381,9 @@ impl RingRows {
         let rings = cells + self.cells.len().div_ceil(4) as u32;
         let shift = Vec2::new(shift.x, shift.z);
         let (corner, middle) = (self.corner + shift, self.middle + shift);
-        let part = if self.rings.is_empty() { 0.0 } else { self.part };
         [
             [CELLS as u32, CELLS as u32, cells, rings],
-            [first, part.to_bits(), (REACH_M as f32).to_bits(), 0],
+            [first, self.part.to_bits(), (REACH_M as f32).to_bits(), 0],
             [corner.x, corner.y, middle.x, middle.y].map(f32::to_bits),
         ]
     }
