@@ -25,8 +25,8 @@ pub trait Lighting: Debug + Sync {
     /// Fraction of light, by color, that passes from a point along a unit direction over a distance in meters.
     fn visibility(&self, point: Vec3, direction: Vec3, distance: f32) -> Vec3;
 
-    /// Distance of the nearest solid from a point along a unit direction, meters; `None` where there is none.
-    fn obstacle(&self, point: Vec3, direction: Vec3) -> Option<f32>;
+    /// True if something stops what comes along a ray of unit direction to a point.
+    fn is_covered(&self, point: Vec3, direction: Vec3) -> bool;
 
     /// True if there are no obstacles at all.
     fn is_open(&self) -> bool;

@@ -257,7 +257,8 @@ fn compared(c: &mut Criterion) {
         let plate = scenes.plate(&gpu, &scene, &frame, &rains, &rain).expect("a plate");
         let pass =
             rains.prepare(&gpu, &plate.of(drawn.picture()), &uploaded, &rain, &lights).expect("a pass");
-        let mut dispatches: Vec<Dispatch<'_>> = pass.binning().concat();
+        let mut dispatches: Vec<Dispatch<'_>> = vec![pass.open_air()];
+        dispatches.extend(pass.binning().concat());
         // The layer holds what is not drawn, which is nothing, until the drops are over it.
         dispatches.extend(pass.medium());
         dispatches.push(pass.drops());

@@ -207,7 +207,7 @@ impl Bench<'_> {
         let table = if streaks.is_empty() { 0.0 } else { time(self.gpu, &streaks)? };
         // The drops go over what is not drawn, which is to be there again each time.
         let [light, mean] = pass.medium();
-        let drops = lists + time(self.gpu, &[light, mean, pass.drops()])?;
+        let drops = lists + time(self.gpu, &[pass.open_air(), light, mean, pass.drops()])?;
         Ok(Cost { binning, capture, table, lamps, drops, layer: pass.layer()? })
     }
 

@@ -7,7 +7,6 @@
 // Light that is weakened on its way from the lamp to the drop is taken to be made good by what is scattered forward on it.
 // Twin: downpour_render::rain::medium::light.
 
-@group(0) @binding(6) var<storage, read> medium_clean: array<vec4f>;
 // Integral of the phase functions of drops (by color) and of fog over the scattering angle, from 0 to each multiple of
 // pi / MEDIUM_ANGLES.
 @group(0) @binding(7) var<storage, read> medium_phase: array<vec4f>;

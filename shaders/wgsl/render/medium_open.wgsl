@@ -1,8 +1,9 @@
 // Air that is open to the rain: a grid over the picture, a column of slices of distance in each cell.
-// Method: one ray per cell and slice, from a position in it against the mean fall; the optical depth of a cell's ray is summed up
-// slice by slice, and a pixel interpolates between the four cells around it.
+// Method: one ray per cell and slice, from a position in it, before what the pixel in the cell's middle shows, against the mean fall; the
+// optical depth of a cell's ray is summed up slice by slice, and a pixel interpolates between the four cells around it.
 // Twin: downpour_render::rain::medium::open.
 
+@group(0) @binding(6) var<storage, read> medium_clean: array<vec4f>;
 // First the grid, MEDIUM_SLICES rows for each cell: optical depth up to the slice's end, 1 if the slice is open. Then for each
 // pixel two: light of lamps if nothing hid them, and optical depth; light of lamps that one ray has seen, and the mean distance
 // of what they light.
@@ -19,11 +20,10 @@ fn medium_open_slice(distance: f32) -> u32 {
     return min(u32(position), MEDIUM_SLICES - 1u);
 }
 
-// The ray of a cell of the grid.
-fn medium_open_ray(column: u32, row: u32) -> vec3f {
-    let x = (f32(column) + 0.5) / f32(medium_frame.columns) * f32(render_frame.camera.width);
-    let y = (f32(row) + 0.5) / f32(medium_frame.rows) * f32(render_frame.camera.height);
-    return camera_direction(render_frame.camera, x, y);
+// The middle of a cell of the grid on the picture, pixels from the top left.
+fn medium_open_middle(column: u32, row: u32) -> vec2f {
+    let part = (vec2f(f32(column), f32(row)) + 0.5) / vec2f(f32(medium_frame.columns), f32(medium_frame.rows));
+    return part * vec2f(f32(render_frame.camera.width), f32(render_frame.camera.height));
 }
 
 // Distance at which a slice begins, m.
@@ -85,8 +85,7 @@ fn medium_open_at(x: f32, y: f32, distance: f32) -> vec2f {
     return sum;
 }
 
-// Of the cells of a workgroup: distance of the surface before each, and optical depth of each slice.
-var<workgroup> medium_open_solid: array<f32, MEDIUM_CELLS>;
+// Of the cells of a workgroup: optical depth of each slice.
 var<workgroup> medium_open_parts: array<array<f32, MEDIUM_SLICES>, MEDIUM_CELLS>;
 
 @compute @workgroup_size(16, 4, 1)
@@ -98,26 +97,15 @@ fn main_medium_open(
     let slice = local.x;
     let cell = (group.y * groups.x + group.x) * MEDIUM_CELLS + local.y;
     let is_cell = cell < medium_frame.columns * medium_frame.rows;
-    let direction = medium_open_ray(cell % medium_frame.columns, cell / medium_frame.columns);
-    let word = rng_draw(vec2u(render_frame.camera.seed, 0u), cell, 0u, MEDIUM_RANDOM_DIMENSION).x;
+    let middle = medium_open_middle(cell % medium_frame.columns, cell / medium_frame.columns);
+    let direction = camera_direction(render_frame.camera, middle.x, middle.y);
     var open = 1.0;
-    if medium_frame.open == 0u {
-        // First one invocation of a cell meets the surface before it; then each asks what is above the air before that. One text for
-        // both: each copy of the walk is compiled again.
-        for (var turn = 0u; turn < 2u; turn += 1u) {
-            if is_cell && (turn == 1u || slice == 0u) {
-                let asks = medium_open_asks(word, slice, medium_open_solid[local.y]);
-                let start = medium_frame.eye + direction * select(asks, 0.0, turn == 0u);
-                let along = select(medium_frame.rise, direction, turn == 0u);
-                let met = surface_walk(start, along, render_frame.nearest, BVH_FAR, turn > 0u).distance;
-                if turn == 0u {
-                    medium_open_solid[local.y] = select(MEDIUM_FAR, met, met >= 0.0);
-                } else {
-                    open = select(0.0, 1.0, met < 0.0);
-                }
-            }
-            workgroupBarrier();
-        }
+    if is_cell && medium_frame.open == 0u {
+        let word = rng_draw(vec2u(render_frame.camera.seed, 0u), cell, 0u, MEDIUM_RANDOM_DIMENSION).x;
+        let solid = medium_clean[u32(middle.y) * render_frame.camera.width + u32(middle.x)].w;
+        let start = medium_frame.eye + direction * medium_open_asks(word, slice, solid);
+        let above = surface_blocker(start, medium_frame.rise, render_frame.nearest, BVH_FAR);
+        open = select(0.0, 1.0, above.distance < 0.0);
     }
     let span = medium_span(direction);
     let outline = medium_outline(direction);

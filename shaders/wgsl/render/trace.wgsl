@@ -149,12 +149,24 @@ fn trace_gathers(x: u32, y: u32) -> bool {
     return x % spacing == render_frame.ray_column && y % spacing == render_frame.ray_row;
 }
 
-// Column or row of the pixel of an invocation, from its column or row. Those of a workgroup are as far apart as pixels whose rays look
-// for light, so that all of them do or none.
-fn trace_place(invocation: u32) -> u32 {
+// The pixel of an invocation of a workgroup. Invocations whose rays look for light are in workgroups of their own, which wait for no others;
+// all others are beside their neighbors, whose rays go the same way through the scene.
+fn trace_place(group: vec2u, invocation: u32) -> vec2u {
     let spacing = render_frame.ray_spacing;
-    let group = invocation / TRACE_GROUP;
-    return (group / spacing * TRACE_GROUP + invocation % TRACE_GROUP) * spacing + group % spacing;
+    // An area of 64 cells of pixels, one of which in each cell looks for light, has as many workgroups as a cell has pixels.
+    let number = group.y % spacing * spacing + group.x % spacing;
+    var cell = invocation;
+    var pixel = render_frame.ray_row * spacing + render_frame.ray_column;
+    if number > 0u {
+        let others = spacing * spacing - 1u;
+        let index = (number - 1u) * (TRACE_GROUP * TRACE_GROUP) + invocation;
+        cell = index / others;
+        pixel = index % others + select(0u, 1u, index % others >= pixel);
+    }
+    // Cells go back and forth, so that any of them in a row are near each other: bits of the column and of the row in turn.
+    let column = (cell & 1u) | ((cell >> 1u) & 2u) | ((cell >> 2u) & 4u);
+    let row = ((cell >> 1u) & 1u) | ((cell >> 2u) & 2u) | ((cell >> 3u) & 4u);
+    return (group / spacing * TRACE_GROUP + vec2u(column, row)) * spacing + vec2u(pixel % spacing, pixel / spacing);
 }
 
 // A pixel before its first sample.
@@ -233,30 +245,28 @@ fn trace_pixel(x: u32, y: u32) -> vec4f {
 
 // All samples of the pixels.
 @compute @workgroup_size(8, 8, 1)
-fn main_trace(@builtin(global_invocation_id) id: vec3u) {
-    let x = trace_place(id.x);
-    let y = trace_place(id.y) + render_frame.first_row;
-    if x >= render_frame.camera.width || y >= render_frame.camera.height {
+fn main_trace(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) invocation: u32) {
+    let at = trace_place(group.xy, invocation) + vec2u(0u, render_frame.first_row);
+    if at.x >= render_frame.camera.width || at.y >= render_frame.camera.height {
         return;
     }
-    trace_picture[y * render_frame.camera.width + x] = trace_pixel(x, y);
+    trace_picture[at.y * render_frame.camera.width + at.x] = trace_pixel(at.x, at.y);
 }
 
 // One sample of the pixels: that of the turn. For a driver that ends the loops of an invocation after so many turns.
 @compute @workgroup_size(8, 8, 1)
-fn main_trace_sample(@builtin(global_invocation_id) id: vec3u) {
-    let x = trace_place(id.x);
-    let row = trace_place(id.y);
-    let y = row + render_frame.first_row;
-    if x >= render_frame.camera.width || y >= render_frame.camera.height {
+fn main_trace_sample(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) invocation: u32) {
+    let place = trace_place(group.xy, invocation);
+    let y = place.y + render_frame.first_row;
+    if place.x >= render_frame.camera.width || y >= render_frame.camera.height {
         return;
     }
-    let at = row * render_frame.camera.width + x;
+    let at = place.y * render_frame.camera.width + place.x;
     var state = trace_begin();
     if render_frame.turn > 0u {
         state = trace_states[at];
     }
-    trace_sample(&state, x, y, render_frame.turn);
+    trace_sample(&state, place.x, y, render_frame.turn);
     trace_states[at] = state;
 }
 

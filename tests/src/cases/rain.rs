@@ -326,6 +326,7 @@ fn masks_case(
     };
     let found = || kept(&format!("{key} found"), || rain.medium_light(lights).found(clean));
     gpu.submit(&plate.dispatches(&pass))?;
+    gpu.submit(&[pass.open_air()])?;
     gpu.submit(&pass.binning().concat())?;
     match part {
         Part::Capture | Part::CaptureBySamples => {

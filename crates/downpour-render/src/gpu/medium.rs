@@ -63,7 +63,7 @@ impl MediumPipeline {
         let frame = buffers.uniform("medium frame", &medium.medium)?;
         let clean = plate.pixels;
         let numbered = || (0u32..).zip(&plate.lighting.buffers);
-        let open = self.open.bind_at(buffers, numbered().chain([(8, &found), (9, &frame)]))?;
+        let open = self.open.bind_at(buffers, numbered().chain([(6, clean), (8, &found), (9, &frame)]))?;
         let of_light = [(6, clean), (7, &phase), (8, &found), (9, &frame)];
         let light = self.light.bind_at(buffers, numbered().chain(of_light))?;
         let of_filter = [(0, &plate.lighting.buffers[0]), (1, &found), (2, clean), (3, layer), (9, &frame)];

@@ -305,16 +305,21 @@ impl RainPass<'_> {
         self.lamps.iter().flat_map(DropLightPass::dispatches).collect()
     }
 
+    /// The grid of the air that is open to the rain: before [`RainPass::medium`], beside anything else.
+    #[must_use]
+    pub fn open_air(&self) -> Dispatch<'_> {
+        self.medium.open()
+    }
+
     /// What is done before anything is lit or drawn, in stages whose dispatches write different buffers: drops that are on the device
-    /// are put on the picture, streaks get their profiles, the tiles their lists, the air its grid of what is open, and the drops that
-    /// are too small for a profile the light of their classes. After [`RainPass::environment`].
+    /// are put on the picture, streaks get their profiles, the tiles their lists, and the drops that are too small for a profile the
+    /// light of their classes. After [`RainPass::environment`].
     #[must_use]
     pub fn binning(&self) -> Vec<Vec<Dispatch<'_>>> {
         let (means, classes) = &self.means;
         let means = self.pipeline.means.dispatch(means, [STREAK_RAYS * STREAK_RAYS, *classes, 1]);
         let mut stages: Vec<Vec<Dispatch<'_>>> =
             self.tiles.dispatches().into_iter().map(|of_tiles| vec![of_tiles]).collect();
-        stages[0].push(self.medium.open());
         let mut after = 0;
         if let Some(project) = &self.project {
             let (first, profiles) = project.dispatches();

@@ -439,6 +439,10 @@ impl Search<'_> {
 }
 
 impl FieldPass<'_> {
+    /// The stage of [`FieldPass::stages`] that asks for obstacles. It takes longest, and leaves room on a large device for what else has
+    /// long ways.
+    pub const SHELTER_STAGE: usize = 2;
+
     /// The dispatches in stages, one after another: those of a stage write different buffers, but for those of the last, which add
     /// splashes and droplets to the list.
     #[must_use]

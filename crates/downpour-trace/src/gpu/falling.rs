@@ -39,12 +39,14 @@ impl FallingPass<'_> {
         }
     }
 
-    /// The dispatches in stages, one after another.
-    pub(super) fn stages(&self) -> Vec<Vec<Dispatch<'_>>> {
-        match self {
-            Self::Field(pass) => pass.stages().into(),
-            Self::Stepped(pass) => pass.stages().into(),
-        }
+    /// The dispatches in stages, one after another, with another that also walks through the scene beside the longest.
+    pub(super) fn stages_beside<'a>(&'a self, other: Dispatch<'a>) -> Vec<Vec<Dispatch<'a>>> {
+        let (mut stages, longest): (Vec<Vec<Dispatch<'_>>>, _) = match self {
+            Self::Field(pass) => (pass.stages().into(), FieldPass::SHELTER_STAGE),
+            Self::Stepped(pass) => (pass.stages().into(), 1),
+        };
+        stages[longest].push(other);
+        stages
     }
 }
 

@@ -290,8 +290,9 @@ impl PictureRenderer {
             let finest = if is_captured { Vec::new() } else { captured };
             passes.run("capture", &[finest, pass.environment()].concat())?;
         }
-        if let Some(search) = &search {
-            passes.run_stages("search", &search.stages())?;
+        match &search {
+            Some(search) => passes.run_stages("search", &search.stages_beside(pass.open_air()))?,
+            None => passes.run("open air", &[pass.open_air()])?,
         }
         passes.run_stages("binning", &pass.binning())?;
         passes.run("lamps", &pass.lamps())?;

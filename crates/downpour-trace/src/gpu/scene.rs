@@ -214,7 +214,7 @@ impl ScenePipeline {
     ) -> Result<SceneRays<'_>, GpuError> {
         let tracer = self.tracer(frame)?;
         let spacing = frame.ray_spacing;
-        // Pixels of a workgroup are `spacing` apart: as many groups as there are pixels in a cell share an area.
+        // As many workgroups as there are pixels in a cell share an area of 64 cells.
         let [columns, rows] = [frame.camera.width, rows].map(|size| size.div_ceil(8 * spacing) * spacing);
         let groups = [columns, rows, 1];
         let Some((seen, states)) = self.seen.as_ref().zip(states) else {

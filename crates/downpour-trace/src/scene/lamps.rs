@@ -374,8 +374,8 @@ impl Lighting for SceneView<'_> {
         self.scene_visibility(point, direction, distance)
     }
 
-    fn obstacle(&self, point: Vec3, direction: Vec3) -> Option<f32> {
-        self.data.surface_hit(point, direction, self.frame.nearest, BVH_FAR).map(|hit| hit.distance)
+    fn is_covered(&self, point: Vec3, direction: Vec3) -> bool {
+        self.data.surface_blocker(point, direction, self.frame.nearest, BVH_FAR).is_some()
     }
 
     fn is_open(&self) -> bool {

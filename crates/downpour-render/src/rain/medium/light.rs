@@ -140,7 +140,7 @@ impl<'a> MediumLight<'a> {
     pub fn found(&self, clean: &[[f32; 4]]) -> Vec<[f32; 4]> {
         let cells = self.medium.columns * self.medium.rows;
         let mut rows: Vec<[f32; 4]> =
-            (0..cells).into_par_iter().flat_map_iter(|cell| self.slices_of(cell)).collect();
+            (0..cells).into_par_iter().flat_map_iter(|cell| self.slices_of(clean, cell)).collect();
         let [width, height] = self.camera.size();
         let grid = &rows;
         let pixels: Vec<[f32; 4]> = (0..height)

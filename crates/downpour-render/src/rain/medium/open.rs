@@ -2,7 +2,7 @@
 
 use downpour_math::ops;
 use downpour_math::rng::{rng_draw, rng_unit};
-use downpour_shaders::render::medium::{MEDIUM_FAR, MEDIUM_NEAR, MEDIUM_RANDOM_DIMENSION, MEDIUM_SLICES};
+use downpour_shaders::render::medium::{MEDIUM_NEAR, MEDIUM_RANDOM_DIMENSION, MEDIUM_SLICES};
 use glam::{Vec2, Vec3};
 
 use super::frame::medium_node;
@@ -34,30 +34,29 @@ pub(super) fn medium_open_slice(distance: f32) -> u32 {
 }
 
 impl MediumLight<'_> {
-    /// The ray of a cell of the grid.
-    fn medium_open_ray(&self, column: u32, row: u32) -> Vec3 {
-        let (medium, camera) = (&self.medium, self.camera);
-        let x = (column as f32 + 0.5) / medium.columns as f32 * camera.width as f32;
-        let y = (row as f32 + 0.5) / medium.rows as f32 * camera.height as f32;
-        self.camera.camera_direction(x, y)
+    /// The middle of a cell of the grid on the picture, pixels from the top left.
+    fn medium_open_middle(&self, column: u32, row: u32) -> Vec2 {
+        let cells = Vec2::new(self.medium.columns as f32, self.medium.rows as f32);
+        let part = (Vec2::new(column as f32, row as f32) + 0.5) / cells;
+        part * Vec2::new(self.camera.width as f32, self.camera.height as f32)
     }
 
-    /// The slices of a cell.
-    pub(super) fn slices_of(&self, cell: u32) -> [[f32; 4]; MEDIUM_SLICES as usize] {
+    /// The slices of a cell; `clean` is the scene's picture with its distances.
+    pub(super) fn slices_of(&self, clean: &[[f32; 4]], cell: u32) -> [[f32; 4]; MEDIUM_SLICES as usize] {
         let medium = &self.medium;
-        let direction = self.medium_open_ray(cell % medium.columns, cell / medium.columns);
+        let middle = self.medium_open_middle(cell % medium.columns, cell / medium.columns);
+        let direction = self.camera.camera_direction(middle.x, middle.y);
         let span = medium.medium_span(direction);
         let outline = medium.medium_outline(direction);
         let [word, ..] = rng_draw([self.camera.seed, 0], cell, 0, MEDIUM_RANDOM_DIMENSION);
-        let hit = |start: Vec3, along: Vec3| self.lighting.obstacle(start, along);
         let eye = Vec3::from(medium.eye);
-        // Distance of the obstacle before the cell; the other rays look for obstacles above the air before it.
-        let solid = if medium.open == 0 { hit(eye, direction) } else { None }.unwrap_or(MEDIUM_FAR);
+        // Rays look for obstacles above the air before what the pixel shows.
+        let [.., solid] = clean[(middle.y as u32 * self.camera.width + middle.x as u32) as usize];
         let mut depth = 0.0;
         std::array::from_fn(|slice| {
             let slice = slice as u32;
             let above = || eye + direction * medium_open_asks(word, slice, solid);
-            let is_open = medium.open == 1 || hit(above(), medium.rise.into()).is_none();
+            let is_open = medium.open == 1 || !self.lighting.is_covered(above(), medium.rise.into());
             let open = if is_open { 1.0 } else { 0.0 };
             let depth_to = |distance| medium.medium_depth(distance, span, outline);
             let before = if slice > 0 { depth_to(medium_open_begin(slice)) } else { 0.0 };
