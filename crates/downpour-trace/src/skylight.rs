@@ -8,7 +8,7 @@
 //!
 //! A neighbor counts as far as its normal agrees and as it is on the plane through the pixel's position; in the gloss, as far
 //! as it mirrors the same direction, within the lobe. Pixels whose rays have not looked for light ([`RenderFrame::ray_spacing`]) count
-//! next to nothing: what they show is what others have found, or the open sky where no other shows their surface.
+//! only where no other does: what they show is what others have found, or the open sky where no other shows their surface.
 //!
 //! [`RenderFrame::ray_spacing`]: crate::data::RenderFrame::ray_spacing
 
@@ -20,6 +20,7 @@ use downpour_shaders::render::scene::{
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
+use crate::data::RenderFrame;
 use crate::path::PathSlot;
 use crate::scene::SceneView;
 use crate::trace::{TraceAmbient, TraceSlot, trace_unpack};
@@ -100,6 +101,13 @@ pub fn skylight_alike(own: Vec4, other: Vec4) -> f32 {
     (1.0 - apart * apart / (SKYLIGHT_NOISE * (own.w + other.w)).max(1.0e-20)).max(0.0)
 }
 
+/// First column (or row) of a window around a pixel, of those that lie `apart` with one of them at `place`, below `apart`.
+#[must_use]
+pub fn skylight_first(at: u32, apart: u32, place: u32) -> u32 {
+    let first = at.saturating_sub(SKYLIGHT_RADIUS);
+    first + (place + apart - first % apart) % apart
+}
+
 /// Slots of all pixels. A mean of a slot is a color and the variance of its luminance.
 struct Pixels<'a> {
     width: u32,
@@ -107,6 +115,10 @@ struct Pixels<'a> {
     slots: &'a [[SkylightSlot; 2]],
     /// True if the rain has made surfaces wet.
     wet: bool,
+    /// Distance between pixels whose rays have looked for light, and column and row of the first.
+    ray_spacing: u32,
+    ray_column: u32,
+    ray_row: u32,
 }
 
 impl SceneView<'_> {
@@ -117,9 +129,9 @@ impl SceneView<'_> {
             .par_iter()
             .map(|pixel| [&pixel.base, &pixel.mirror].map(|slot| skylight_slot(slot, eye)))
             .collect();
-        let (width, height) = (self.frame.camera.width, self.frame.camera.height);
-        let wet = self.frame.wetness > 0;
-        let pixels = &Pixels { width, height, slots: &slots, wet };
+        let RenderFrame { camera, ray_spacing, ray_column, ray_row, .. } = *self.frame;
+        let (width, height, wet) = (camera.width, camera.height, self.frame.wetness > 0);
+        let pixels = &Pixels { width, height, slots: &slots, wet, ray_spacing, ray_column, ray_row };
         let all = |of: &(dyn Fn(u32, u32, usize) -> Vec4 + Sync)| -> Vec<[Vec4; 2]> {
             (0..height)
                 .into_par_iter()
@@ -153,7 +165,8 @@ fn skylight_slot(slot: &TraceSlot, eye: Vec3) -> SkylightSlot {
 }
 
 impl Pixels<'_> {
-    /// The mean of the window around a pixel, and the variance of its luminance.
+    /// The mean of the window around a pixel, and the variance of its luminance: of the pixels whose rays have looked for light, or
+    /// of all where none of those shows anything like it.
     fn skylight_mean(&self, x: u32, y: u32, slot: usize) -> Vec4 {
         let index = |x: u32, y: u32| (y * self.width + x) as usize;
         let own = &self.slots[index(x, y)][slot];
@@ -161,23 +174,30 @@ impl Pixels<'_> {
             return Vec4::ZERO;
         }
         let (mut sum, mut squares, mut weight, mut weights) = (Vec3::ZERO, 0.0, 0.0, 0.0);
-        let around =
-            |at: u32, size: u32| at.saturating_sub(SKYLIGHT_RADIUS)..=(at + SKYLIGHT_RADIUS).min(size - 1);
-        for row in around(y, self.height) {
-            for column in around(x, self.width) {
-                let other = index(column, row);
-                let mut counts =
-                    skylight_hat(x, column) * skylight_hat(y, row) * self.slots[other][slot].weight;
-                if row != y || column != x {
-                    counts *= skylight_near(own, &self.slots[other][slot], self.wet);
-                }
-                if counts > 0.0 {
-                    let light = self.slots[other][slot].light;
-                    let luminance = color_luminance(light.into());
-                    sum += light * counts;
-                    squares += luminance * luminance * counts;
-                    weight += counts;
-                    weights += counts * counts;
+        for apart in [self.ray_spacing, 1] {
+            if weight > 0.0 {
+                break;
+            }
+            let around = |at: u32, place: u32, size: u32| {
+                let first = skylight_first(at, apart, place % apart);
+                (first..=(at + SKYLIGHT_RADIUS).min(size - 1)).step_by(apart as usize)
+            };
+            for row in around(y, self.ray_row, self.height) {
+                for column in around(x, self.ray_column, self.width) {
+                    let other = index(column, row);
+                    let mut counts =
+                        skylight_hat(x, column) * skylight_hat(y, row) * self.slots[other][slot].weight;
+                    if row != y || column != x {
+                        counts *= skylight_near(own, &self.slots[other][slot], self.wet);
+                    }
+                    if counts > 0.0 {
+                        let light = self.slots[other][slot].light;
+                        let luminance = color_luminance(light.into());
+                        sum += light * counts;
+                        squares += luminance * luminance * counts;
+                        weight += counts;
+                        weights += counts * counts;
+                    }
                 }
             }
         }

@@ -94,7 +94,14 @@ fn skylight_alike(own: vec4f, other: vec4f) -> f32 {
     return max(1.0 - apart * apart / max(SKYLIGHT_NOISE * (own.w + other.w), 1.0e-20), 0.0);
 }
 
-// The mean of the window around a pixel, and the variance of its luminance.
+// First column (or row) of a window around a pixel, of those that lie `apart` with one of them at `place`.
+fn skylight_first(at: u32, apart: u32, place: u32) -> u32 {
+    let first = max(at, SKYLIGHT_RADIUS) - SKYLIGHT_RADIUS;
+    return first + (place + apart - first % apart) % apart;
+}
+
+// The mean of the window around a pixel, and the variance of its luminance: of the pixels whose rays have looked for light, or of all
+// where none of those shows anything like it.
 fn skylight_mean(x: u32, y: u32, slot: u32) -> vec4f {
     let own = skylight_slot(y * render_frame.camera.width + x, slot);
     if own.slack <= 0.0 {
@@ -104,21 +111,25 @@ fn skylight_mean(x: u32, y: u32, slot: u32) -> vec4f {
     var squares = 0.0;
     var weight = 0.0;
     var weights = 0.0;
-    let left = max(x, SKYLIGHT_RADIUS) - SKYLIGHT_RADIUS;
-    let top = max(y, SKYLIGHT_RADIUS) - SKYLIGHT_RADIUS;
-    for (var row = top; row <= min(y + SKYLIGHT_RADIUS, render_frame.camera.height - 1u); row += 1u) {
-        for (var column = left; column <= min(x + SKYLIGHT_RADIUS, render_frame.camera.width - 1u); column += 1u) {
-            let other = skylight_slot(row * render_frame.camera.width + column, slot);
-            var counts = skylight_hat(x, column) * skylight_hat(y, row) * other.weight;
-            if row != y || column != x {
-                counts *= skylight_near(own, other);
-            }
-            if counts > 0.0 {
-                let luminance = color_luminance(other.light);
-                sum += other.light * counts;
-                squares += luminance * luminance * counts;
-                weight += counts;
-                weights += counts * counts;
+    let right = min(x + SKYLIGHT_RADIUS, render_frame.camera.width - 1u);
+    let bottom = min(y + SKYLIGHT_RADIUS, render_frame.camera.height - 1u);
+    for (var turn = 0u; turn < 2u && weight <= 0.0; turn += 1u) {
+        let apart = select(render_frame.ray_spacing, 1u, turn > 0u);
+        let left = skylight_first(x, apart, render_frame.ray_column % apart);
+        for (var row = skylight_first(y, apart, render_frame.ray_row % apart); row <= bottom; row += apart) {
+            for (var column = left; column <= right; column += apart) {
+                let other = skylight_slot(row * render_frame.camera.width + column, slot);
+                var counts = skylight_hat(x, column) * skylight_hat(y, row) * other.weight;
+                if row != y || column != x {
+                    counts *= skylight_near(own, other);
+                }
+                if counts > 0.0 {
+                    let luminance = color_luminance(other.light);
+                    sum += other.light * counts;
+                    squares += luminance * luminance * counts;
+                    weight += counts;
+                    weights += counts * counts;
+                }
             }
         }
     }

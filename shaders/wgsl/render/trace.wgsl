@@ -149,24 +149,28 @@ fn trace_gathers(x: u32, y: u32) -> bool {
     return x % spacing == render_frame.ray_column && y % spacing == render_frame.ray_row;
 }
 
-// The pixel of an invocation of a workgroup. Invocations whose rays look for light are in workgroups of their own, which wait for no others;
-// all others are beside their neighbors, whose rays go the same way through the scene.
-fn trace_place(group: vec2u, invocation: u32) -> vec2u {
+// The pixel of an invocation of a workgroup. Invocations whose rays look for light are in workgroups of their own, which wait for no others
+// and begin first; all others are beside their neighbors, whose rays go the same way through the scene.
+fn trace_place(group: vec2u, groups: vec2u, invocation: u32) -> vec2u {
     let spacing = render_frame.ray_spacing;
     // An area of 64 cells of pixels, one of which in each cell looks for light, has as many workgroups as a cell has pixels.
-    let number = group.y % spacing * spacing + group.x % spacing;
+    let areas = groups / spacing;
+    let others = spacing * spacing - 1u;
+    var area = group.y * groups.x + group.x;
     var cell = invocation;
     var pixel = render_frame.ray_row * spacing + render_frame.ray_column;
-    if number > 0u {
-        let others = spacing * spacing - 1u;
-        let index = (number - 1u) * (TRACE_GROUP * TRACE_GROUP) + invocation;
+    if area >= areas.x * areas.y {
+        let later = area - areas.x * areas.y;
+        area = later / others;
+        let index = later % others * (TRACE_GROUP * TRACE_GROUP) + invocation;
         cell = index / others;
         pixel = index % others + select(0u, 1u, index % others >= pixel);
     }
+    let corner = vec2u(area % areas.x, area / areas.x) * TRACE_GROUP;
     // Cells go back and forth, so that any of them in a row are near each other: bits of the column and of the row in turn.
     let column = (cell & 1u) | ((cell >> 1u) & 2u) | ((cell >> 2u) & 4u);
     let row = ((cell >> 1u) & 1u) | ((cell >> 2u) & 2u) | ((cell >> 3u) & 4u);
-    return (group / spacing * TRACE_GROUP + vec2u(column, row)) * spacing + vec2u(pixel % spacing, pixel / spacing);
+    return (corner + vec2u(column, row)) * spacing + vec2u(pixel % spacing, pixel / spacing);
 }
 
 // A pixel before its first sample.
@@ -245,8 +249,12 @@ fn trace_pixel(x: u32, y: u32) -> vec4f {
 
 // All samples of the pixels.
 @compute @workgroup_size(8, 8, 1)
-fn main_trace(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) invocation: u32) {
-    let at = trace_place(group.xy, invocation) + vec2u(0u, render_frame.first_row);
+fn main_trace(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_index) invocation: u32,
+) {
+    let at = trace_place(group.xy, groups.xy, invocation) + vec2u(0u, render_frame.first_row);
     if at.x >= render_frame.camera.width || at.y >= render_frame.camera.height {
         return;
     }
@@ -255,8 +263,12 @@ fn main_trace(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_ind
 
 // One sample of the pixels: that of the turn. For a driver that ends the loops of an invocation after so many turns.
 @compute @workgroup_size(8, 8, 1)
-fn main_trace_sample(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) invocation: u32) {
-    let place = trace_place(group.xy, invocation);
+fn main_trace_sample(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_index) invocation: u32,
+) {
+    let place = trace_place(group.xy, groups.xy, invocation);
     let y = place.y + render_frame.first_row;
     if place.x >= render_frame.camera.width || y >= render_frame.camera.height {
         return;

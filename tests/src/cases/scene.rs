@@ -26,7 +26,7 @@ use downpour_trace::scatter::{
 };
 use downpour_trace::scene::{SceneView, scene_alpha, scene_disk, scene_softness};
 use downpour_trace::sky_light::SkyLight;
-use downpour_trace::skylight::{skylight_film, skylight_hat, skylight_lobe};
+use downpour_trace::skylight::{skylight_film, skylight_first, skylight_hat, skylight_lobe};
 use downpour_trace::texture::texture_wrap;
 use glam::{Affine3A, Vec3};
 
@@ -249,6 +249,19 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new("skylight_film", &SKYLIGHT, &[fraction, fraction], FORMULA, |a| {
             skylight_film(a.f32(), a.f32()).words()
         }),
+        FunctionCase::new(
+            "skylight_first",
+            &SKYLIGHT,
+            &[
+                Below(2000),
+                Made(|r| {
+                    let apart = 1 + r[0] % 4;
+                    vec![apart, r[1] % apart]
+                }),
+            ],
+            Tol::exact("whole numbers"),
+            |a| skylight_first(a.u32(), a.u32(), a.u32()).words(),
+        ),
         FunctionCase::new(
             "skylight_hat",
             &SKYLIGHT,
