@@ -501,6 +501,10 @@ pub(super) fn kernels() -> Vec<KernelCase> {
     };
     vec![
         filter("main_skylight: from above", |gpu| scene_case(gpu, Vec3::new(1.6, 3.4, 2.0), 2)),
+        filter("main_skylight: rays of one pixel in 16 that look for light", |gpu| {
+            let rays = PictureRays { spacing: 4, ..PictureRays::default() };
+            picture_by(rays, gpu, &shining_scene(), Vec3::new(0.6, 1.4, 3.0))
+        }),
         case("main_trace: near, with rays to the sky", DULL, |gpu| {
             scene_case(gpu, Vec3::new(0.6, 1.4, 3.0), 4)
         }),
