@@ -1,10 +1,13 @@
 //! Rain over the frames of an application, 100 mm/h at 1920x1080: the CPU's part of a frame, what the same search for drops takes
-//! on the CPU, and the device's search, binning and all of a frame.
+//! on the CPU, and the device's search, binning and all of a frame. `rain before a wall`, 25 mm/h at 1280x720: the drops before a wall that is 10 m
+//! away, and those before one at 100 m, which are 1000 times as many.
 
 use std::time::{Duration, Instant};
 
-use criterion::{Criterion, criterion_group, criterion_main};
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use downpour::drop::distribution::DropSizeDistribution;
 use downpour::gpu::{AdapterChoice, Gpu, GpuOptions, LimitSet, wgpu};
+use downpour::math::ops;
 use downpour::rain::{PlateTextures, Rain, RainSettings, RainView};
 use downpour::render::camera::{EyeMotion, Viewpoint};
 use downpour::render::light::LightSource;
@@ -12,7 +15,10 @@ use glam::Vec3;
 
 const SIZE: [u32; 2] = [1920, 1080];
 
-/// A frame of gray, 20 m away.
+/// Distance of the near plane of the host's depth, m.
+const NEAR_M: f32 = 0.1;
+
+/// A gray wall across the view.
 struct Host {
     gpu: Gpu,
     color: wgpu::TextureView,
@@ -20,7 +26,7 @@ struct Host {
 }
 
 impl Host {
-    fn new(size: [u32; 2]) -> Self {
+    fn new(size: [u32; 2], wall_m: f32) -> Self {
         let options = GpuOptions {
             adapter: AdapterChoice::Auto,
             limits: LimitSet::WebGpuDefault,
@@ -43,11 +49,11 @@ impl Host {
         let (color, depth) =
             (view(wgpu::TextureFormat::Rgba16Float), view(wgpu::TextureFormat::Depth32Float));
         let host = Self { gpu, color, depth };
-        host.clear();
+        host.clear(wall_m);
         host
     }
 
-    fn clear(&self) {
+    fn clear(&self, wall_m: f32) {
         let mut encoder = self.gpu.device().create_command_encoder(&Default::default());
         encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -62,7 +68,7 @@ impl Host {
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &self.depth,
                 depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(0.1 / 20.0),
+                    load: wgpu::LoadOp::Clear(NEAR_M / wall_m),
                     store: wgpu::StoreOp::Store,
                 }),
                 stencil_ops: None,
@@ -80,7 +86,8 @@ impl Host {
             intensity: Vec3::splat(400.0),
             range: 0.0,
         }];
-        let textures = PlateTextures { lights: &lights, ..PlateTextures::new(&self.color, &self.depth, 0.1) };
+        let textures =
+            PlateTextures { lights: &lights, ..PlateTextures::new(&self.color, &self.depth, NEAR_M) };
         rain.render(&mut encoder, &view(frame), &textures).expect("a frame");
         encoder
     }
@@ -100,7 +107,7 @@ fn settings() -> RainSettings {
 }
 
 fn rain(c: &mut Criterion) {
-    let host = Host::new(SIZE);
+    let host = Host::new(SIZE, 20.0);
     let mut rain = Rain::new(host.gpu.device(), host.gpu.queue(), settings()).expect("rain");
     let drops = rain.drops(&view(0), SIZE).expect("drops");
     let [listed, tried] = [drops.drops.len() as u64, drops.simulated];
@@ -140,5 +147,34 @@ fn rain(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, rain);
+/// Few drops and a thousand times as many, by the distance of what stands behind them.
+fn walls(c: &mut Criterion) {
+    let size = [1280, 720];
+    let settings =
+        RainSettings { rate_mm_h: 25.0, max_drops: 2_000_000, far_m: 100.0, ..RainSettings::default() };
+    let density =
+        DropSizeDistribution::new(settings.sizes, settings.rate_mm_h).expect("a rain").number_density();
+    let mut group = c.benchmark_group("rain before a wall");
+    group.sample_size(20);
+    for wall_m in [10.0f32, 100.0] {
+        let host = Host::new(size, wall_m);
+        let mut rain = Rain::new(host.gpu.device(), host.gpu.queue(), settings.clone()).expect("rain");
+        let camera = view(0).camera;
+        let half_height = ops::f64::tan(f64::from(camera.fov_y) * 0.5) * f64::from(wall_m);
+        let base = 4.0 * half_height * half_height * f64::from(size[0]) / f64::from(size[1]);
+        println!("{:.2e} drops before a wall at {wall_m} m", density * base * f64::from(wall_m) / 3.0);
+        let mut frame = 0;
+        group.bench_function(BenchmarkId::from_parameter(wall_m), |b| {
+            b.iter(|| {
+                frame += 1;
+                let encoder = host.record(&mut rain, frame);
+                host.gpu.queue().submit([encoder.finish()]);
+                host.gpu.wait().expect("a device");
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, rain, walls);
 criterion_main!(benches);
