@@ -25,7 +25,7 @@ pub trait Lighting: Debug + Sync {
     /// Fraction of light, by color, that passes from a point along a unit direction over a distance in meters.
     fn visibility(&self, point: Vec3, direction: Vec3, distance: f32) -> Vec3;
 
-    /// True if something stops what comes along a ray of unit direction to a point.
+    /// True if anything is in the way from a point along a unit direction.
     fn is_covered(&self, point: Vec3, direction: Vec3) -> bool;
 
     /// True if there are no obstacles at all.

@@ -101,7 +101,7 @@ pub fn skylight_alike(own: Vec4, other: Vec4) -> f32 {
     (1.0 - apart * apart / (SKYLIGHT_NOISE * (own.w + other.w)).max(1.0e-20)).max(0.0)
 }
 
-/// First column (or row) of a window around a pixel, of those that lie `apart` with one of them at `place`, below `apart`.
+/// First column (or row) of a window around a pixel, of those that lie `apart` with one of them at `place`.
 #[must_use]
 pub fn skylight_first(at: u32, apart: u32, place: u32) -> u32 {
     let first = at.saturating_sub(SKYLIGHT_RADIUS);
@@ -110,15 +110,10 @@ pub fn skylight_first(at: u32, apart: u32, place: u32) -> u32 {
 
 /// Slots of all pixels. A mean of a slot is a color and the variance of its luminance.
 struct Pixels<'a> {
-    width: u32,
-    height: u32,
+    frame: &'a RenderFrame,
     slots: &'a [[SkylightSlot; 2]],
     /// True if the rain has made surfaces wet.
     wet: bool,
-    /// Distance between pixels whose rays have looked for light, and column and row of the first.
-    ray_spacing: u32,
-    ray_column: u32,
-    ray_row: u32,
 }
 
 impl SceneView<'_> {
@@ -129,9 +124,8 @@ impl SceneView<'_> {
             .par_iter()
             .map(|pixel| [&pixel.base, &pixel.mirror].map(|slot| skylight_slot(slot, eye)))
             .collect();
-        let RenderFrame { camera, ray_spacing, ray_column, ray_row, .. } = *self.frame;
-        let (width, height, wet) = (camera.width, camera.height, self.frame.wetness > 0);
-        let pixels = &Pixels { width, height, slots: &slots, wet, ray_spacing, ray_column, ray_row };
+        let [width, height] = self.frame.camera.size();
+        let pixels = &Pixels { frame: self.frame, slots: &slots, wet: self.frame.wetness > 0 };
         let all = |of: &(dyn Fn(u32, u32, usize) -> Vec4 + Sync)| -> Vec<[Vec4; 2]> {
             (0..height)
                 .into_par_iter()
@@ -168,22 +162,23 @@ impl Pixels<'_> {
     /// The mean of the window around a pixel, and the variance of its luminance: of the pixels whose rays have looked for light, or
     /// of all where none of those shows anything like it.
     fn skylight_mean(&self, x: u32, y: u32, slot: usize) -> Vec4 {
-        let index = |x: u32, y: u32| (y * self.width + x) as usize;
+        let RenderFrame { camera, ray_spacing, ray_column, ray_row, .. } = self.frame;
+        let index = |x: u32, y: u32| (y * camera.width + x) as usize;
         let own = &self.slots[index(x, y)][slot];
         if own.slack <= 0.0 {
             return Vec4::ZERO;
         }
         let (mut sum, mut squares, mut weight, mut weights) = (Vec3::ZERO, 0.0, 0.0, 0.0);
-        for apart in [self.ray_spacing, 1] {
+        for apart in [*ray_spacing, 1] {
             if weight > 0.0 {
                 break;
             }
             let around = |at: u32, place: u32, size: u32| {
-                let first = skylight_first(at, apart, place % apart);
+                let first = skylight_first(at, apart, place);
                 (first..=(at + SKYLIGHT_RADIUS).min(size - 1)).step_by(apart as usize)
             };
-            for row in around(y, self.ray_row, self.height) {
-                for column in around(x, self.ray_column, self.width) {
+            for row in around(y, *ray_row, camera.height) {
+                for column in around(x, *ray_column, camera.width) {
                     let other = index(column, row);
                     let mut counts =
                         skylight_hat(x, column) * skylight_hat(y, row) * self.slots[other][slot].weight;
@@ -211,7 +206,8 @@ impl Pixels<'_> {
 
     /// The mean of means `step` pixels apart that show the same.
     fn skylight_wide(&self, means: &[[Vec4; 2]], x: u32, y: u32, slot: usize, step: u32) -> Vec4 {
-        let here = (y * self.width + x) as usize;
+        let [width, height] = self.frame.camera.size();
+        let here = (y * width + x) as usize;
         let (own, mean) = (&self.slots[here][slot], means[here][slot]);
         if own.slack <= 0.0 {
             return Vec4::ZERO;
@@ -219,15 +215,10 @@ impl Pixels<'_> {
         let (mut sum, mut variance, mut weight) = (mean.truncate() * 4.0, mean.w * 16.0, 4.0);
         for k in 0..9 {
             let (column, row) = (x + k % 3 * step, y + k / 3 * step);
-            if k == 4
-                || column < step
-                || row < step
-                || column - step >= self.width
-                || row - step >= self.height
-            {
+            if k == 4 || column < step || row < step || column - step >= width || row - step >= height {
                 continue;
             }
-            let other = ((row - step) * self.width + column - step) as usize;
+            let other = ((row - step) * width + column - step) as usize;
             let its = means[other][slot];
             let kernel = if k % 2 == 0 { 1.0 } else { 2.0 };
             let counts =

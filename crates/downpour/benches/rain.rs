@@ -91,6 +91,13 @@ impl Host {
         rain.render(&mut encoder, &view(frame), &textures).expect("a frame");
         encoder
     }
+
+    /// Draws a frame, and waits until the device is idle.
+    fn draw(&self, rain: &mut Rain, frame: u32) {
+        let encoder = self.record(rain, frame);
+        self.gpu.queue().submit([encoder.finish()]);
+        self.gpu.wait().expect("a device");
+    }
 }
 
 fn view(frame: u32) -> RainView {
@@ -139,9 +146,7 @@ fn rain(c: &mut Criterion) {
     group.bench_function("drawn by the device", |b| {
         b.iter(|| {
             frame += 1;
-            let encoder = host.record(&mut rain, frame);
-            host.gpu.queue().submit([encoder.finish()]);
-            host.gpu.wait().expect("a device");
+            host.draw(&mut rain, frame);
         });
     });
     group.finish();
@@ -167,9 +172,7 @@ fn walls(c: &mut Criterion) {
         group.bench_function(BenchmarkId::from_parameter(wall_m), |b| {
             b.iter(|| {
                 frame += 1;
-                let encoder = host.record(&mut rain, frame);
-                host.gpu.queue().submit([encoder.finish()]);
-                host.gpu.wait().expect("a device");
+                host.draw(&mut rain, frame);
             });
         });
     }

@@ -16,7 +16,7 @@ use downpour_render::rain::{
     DropMasks, Exposure, MediumGrain, MediumOptions, Rain as PictureRain, RainMedium, RainOptions,
 };
 use downpour_sim::field::{RainField, VisibleDrops};
-use downpour_sim::gpu::{FieldOnGpu, FieldPass, FieldPipeline, FieldSearch, ObstaclesOnGpu};
+use downpour_sim::gpu::{FieldOnGpu, FieldPipeline, FieldSearch, ObstaclesOnGpu};
 use downpour_sim::impacts::SplashOptions;
 use downpour_sim::resolved::Resolved;
 use downpour_sim::shelter::Obstacles;
@@ -298,9 +298,7 @@ impl Rain {
         let masks = (&self.masks_on_gpu, &self.masks);
         let pass = self.rains.prepare_falling(pool, &plate, masks, (&rain, &options), &lights, falling)?;
         let mut stages = vec![[made.dispatches(), pass.environment()].concat()];
-        let mut search = found.stages();
-        search[FieldPass::SHELTER_STAGE].push(pass.open_air());
-        stages.extend(search);
+        stages.extend(found.stages_beside(pass.open_air()));
         stages.extend(pass.binning());
         stages.push([pass.lamps(), pass.streaks(), pass.medium().to_vec(), vec![pass.drops()]].concat());
         for stage in &stages {

@@ -115,8 +115,8 @@ fn skylight_mean(x: u32, y: u32, slot: u32) -> vec4f {
     let bottom = min(y + SKYLIGHT_RADIUS, render_frame.camera.height - 1u);
     for (var turn = 0u; turn < 2u && weight <= 0.0; turn += 1u) {
         let apart = select(render_frame.ray_spacing, 1u, turn > 0u);
-        let left = skylight_first(x, apart, render_frame.ray_column % apart);
-        for (var row = skylight_first(y, apart, render_frame.ray_row % apart); row <= bottom; row += apart) {
+        let left = skylight_first(x, apart, render_frame.ray_column);
+        for (var row = skylight_first(y, apart, render_frame.ray_row); row <= bottom; row += apart) {
             for (var column = left; column <= right; column += apart) {
                 let other = skylight_slot(row * render_frame.camera.width + column, slot);
                 var counts = skylight_hat(x, column) * skylight_hat(y, row) * other.weight;

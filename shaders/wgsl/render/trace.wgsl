@@ -164,10 +164,11 @@ fn trace_place(group: vec2u, groups: vec2u, invocation: u32) -> vec2u {
         area = later / others;
         let index = later % others * (TRACE_GROUP * TRACE_GROUP) + invocation;
         cell = index / others;
-        pixel = index % others + select(0u, 1u, index % others >= pixel);
+        let other = index % others;
+        pixel = other + select(0u, 1u, other >= pixel);
     }
     let corner = vec2u(area % areas.x, area / areas.x) * TRACE_GROUP;
-    // Cells go back and forth, so that any of them in a row are near each other: bits of the column and of the row in turn.
+    // Cells in Morton order, so that any of them in a row are near each other: bits of the column and of the row in turn.
     let column = (cell & 1u) | ((cell >> 1u) & 2u) | ((cell >> 2u) & 4u);
     let row = ((cell >> 1u) & 1u) | ((cell >> 2u) & 2u) | ((cell >> 3u) & 4u);
     return (corner + vec2u(column, row)) * spacing + vec2u(pixel % spacing, pixel / spacing);

@@ -439,10 +439,6 @@ impl Search<'_> {
 }
 
 impl FieldPass<'_> {
-    /// The stage of [`FieldPass::stages`] that asks for obstacles. It takes longest, and leaves room on a large device for what else has
-    /// long ways.
-    pub const SHELTER_STAGE: usize = 2;
-
     /// The dispatches in stages, one after another: those of a stage write different buffers, but for those of the last, which add
     /// splashes and droplets to the list.
     #[must_use]
@@ -459,6 +455,14 @@ impl FieldPass<'_> {
         for (stage, (kernel, bindings, groups)) in stages.iter_mut().zip(&self.bounces) {
             stage.push(kernel.dispatch(bindings, *groups));
         }
+        stages
+    }
+
+    /// The same with another dispatch beside those that ask for obstacles, which take longest and leave room on a large device.
+    #[must_use]
+    pub fn stages_beside<'a>(&'a self, other: Dispatch<'a>) -> [Vec<Dispatch<'a>>; 4] {
+        let mut stages = self.stages();
+        stages[2].push(other);
         stages
     }
 

@@ -112,6 +112,14 @@ impl StepListPass<'_> {
         [vec![kernel.dispatch(bindings, *groups)], pieces.collect()]
     }
 
+    /// The same with another dispatch beside those that list the drops.
+    #[must_use]
+    pub fn stages_beside<'a>(&'a self, other: Dispatch<'a>) -> [Vec<Dispatch<'a>>; 2] {
+        let mut stages = self.stages();
+        stages[1].push(other);
+        stages
+    }
+
     /// The list that they fill.
     #[must_use]
     pub fn list(&self) -> &DropListOnGpu {

@@ -41,12 +41,10 @@ impl FallingPass<'_> {
 
     /// The dispatches in stages, one after another, with another that also walks through the scene beside the longest.
     pub(super) fn stages_beside<'a>(&'a self, other: Dispatch<'a>) -> Vec<Vec<Dispatch<'a>>> {
-        let (mut stages, longest): (Vec<Vec<Dispatch<'_>>>, _) = match self {
-            Self::Field(pass) => (pass.stages().into(), FieldPass::SHELTER_STAGE),
-            Self::Stepped(pass) => (pass.stages().into(), 1),
-        };
-        stages[longest].push(other);
-        stages
+        match self {
+            Self::Field(pass) => pass.stages_beside(other).into(),
+            Self::Stepped(pass) => pass.stages_beside(other).into(),
+        }
     }
 }
 
