@@ -39,6 +39,7 @@ use downpour_sim::impacts::bounce_frame::{BounceFrame, BounceParts};
 use downpour_sim::impacts::splash_frame::SplashFrame;
 use downpour_sim::step::{StepEvent, StepFrame};
 use downpour_sim::step_list::StepListFrame;
+use downpour_sim::step_splash::StepSplashFrame;
 use downpour_sim::volume::{VolumeEye, VolumeFrustum};
 use downpour_specimen::gpu::{CameraUniform, LampUniform, SpecimenUniform, StreakUniform};
 use downpour_tests::signature::parse;
@@ -169,14 +170,16 @@ fn hosts() -> Vec<Host> {
         host!(CollisionTexel as "CollisionTexel" in &sim::collision::COLLISION, depths, surfaces),
         host!(StepFrame as "StepFrame" in &sim::step::STEP,
             now, shift, count, size, first, center, volume, wind, time, seed, step, elsewhere, farthest, average,
-            events, bounce, restitution, grip, bounced_size, bounced_time, gauge_height, gauge, boxes, unused_1, gauge_area,
+            events, bounce, restitution, grip, bounced_size, bounced_time, gauge_height, gauge, boxes, kept_room, gauge_area,
             frustum, frustum_before, tangents, lags, oldest, candidates, regions, regions_first, sizes_first, pieces,
-            piece, unused_2),
+            piece, kept_span, kept_since, unused_1, unused_2, unused_3),
         host!(StepListFrame as "StepListFrame" in &sim::step_list::STEP_LIST,
             eye, after, velocity, half_shutter, turning, nearest, center, farthest, size, volume, sides, pane, seed, range,
             bounce, restitution, grip, bounced_size, step, per_second, count, first, known, room, unused_1, unused_2,
             unused_3),
-        host!(StepEvent as "StepEvent" in &sim::step::STEP, position, diameter, velocity, drop),
+        host!(StepEvent as "StepEvent" in &sim::step::STEP, position, diameter, velocity, drop, normal, time, last),
+        host!(StepSplashFrame as "StepSplashFrame" in &sim::step_list::STEP_SPLASH,
+            spans, first, room, unused_1, unused_2),
         host!(EnterRegion as "EnterRegion" in &sim::enter::ENTER,
             face, bin, first, first_of_bin, low, high, begin, end, slope, width, middle, unused),
         host!(VolumeFrustum as "VolumeFrustum" in &sim::step::VOLUME,

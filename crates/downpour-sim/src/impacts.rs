@@ -33,9 +33,10 @@ mod crossings;
 mod places;
 #[cfg(feature = "wgpu")]
 pub(crate) mod slices;
-#[cfg(feature = "wgpu")]
 #[doc(hidden)]
 pub mod splash_frame;
+#[cfg(feature = "wgpu")]
+pub(crate) mod splash_search;
 mod splashes;
 mod ways;
 

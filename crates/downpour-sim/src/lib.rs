@@ -7,7 +7,8 @@
 //! - [`simulation`]: rain step by step in a volume that follows the camera: any wind, bounces, impacts; on a GPU as
 //!   well (`gpu`, feature `wgpu`);
 //! - [`collision`]: collision map of the surfaces that its drops hit;
-//! - [`motion`], [`volume`], [`step`], [`enter`]: parts of a step; [`step_list`]: the drops of a state that a picture shows;
+//! - [`motion`], [`volume`], [`step`], [`enter`]: parts of a step; [`step_list`]: the drops of a state that a picture shows, [`step_splash`]:
+//!   the splashes of impacts before it;
 //! - [`view`]: drops that a camera can resolve; [`resolved`]: limits of the list of drops for a picture.
 //!
 //! Units are SI; rates are in mm/h where the name says so. Axes are those of glTF: right-handed, +Y up.
@@ -32,12 +33,14 @@ mod options;
 mod plan;
 mod poisson;
 mod population;
+mod recent;
 mod region;
 pub mod resolved;
 pub mod shelter;
 pub mod simulation;
 pub mod step;
 pub mod step_list;
+pub mod step_splash;
 pub mod view;
 pub mod volume;
 

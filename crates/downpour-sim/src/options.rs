@@ -125,12 +125,15 @@ pub struct SimulationOptions {
     pub bounce: Bounce,
     /// Maximum number of impacts recorded per step; the others are only counted.
     pub max_events: u32,
+    /// Maximum number of impacts of 1/60 s (or of a longer step) that are kept for the splashes of pictures, 0 to 2^17; 0: there are no
+    /// splashes. The CPU keeps all of them unless there are none.
+    pub max_kept: u32,
     /// Rain gauge.
     pub gauge: Option<Gauge>,
 }
 
 impl Default for SimulationOptions {
-    /// Two million drops in view; 65 536 impacts per step.
+    /// Two million drops in view; 65 536 impacts per step, of which 32 768 may splash.
     fn default() -> Self {
         Self {
             volume: SimVolume::View,
@@ -143,6 +146,7 @@ impl Default for SimulationOptions {
             drag: Drag::Relaxation,
             bounce: Bounce::default(),
             max_events: 1 << 16,
+            max_kept: 1 << 15,
             gauge: None,
         }
     }
@@ -181,6 +185,7 @@ impl SimulationOptions {
         if u64::from(self.max_drops) > MAX_DROPS_IN_MEMORY {
             return Err(SimError::memory(self.max_drops.into()));
         }
+        in_range("most impacts kept", f64::from(self.max_kept), "", &(0.0..=131_072.0), 1.0, "0 to 2^17")?;
         in_range("time of the shutter", self.shutter_s, "s", &(0.0..=10.0), 1.0, "0 to 10")?;
         in_range(
             "time from a state to the shutter's opening",

@@ -18,6 +18,7 @@ use crate::frustum::{Frustum, PLANES};
 use crate::inflow::regions;
 use crate::options::{Drag, SimVolume, SimulationOptions};
 use crate::population::{Bin, affordable_pixels, bins, box_center, reserve};
+use crate::recent::RecentSpans;
 use crate::resolved::{Region, Resolved};
 use crate::step::{StepFrame, step_pack};
 use crate::view::View;
@@ -69,6 +70,8 @@ pub(crate) struct Turn {
     pub(crate) frame: StepFrame,
     /// Regions, with one that marks their end; empty if nothing enters.
     pub(crate) regions: Vec<EnterRegion>,
+    /// True if the step begins its span: nothing is kept in it yet.
+    pub(crate) begins_span: bool,
 }
 
 /// Source of the frames of a simulation.
@@ -84,6 +87,8 @@ pub(crate) struct Plan {
     step: u32,
     /// Duration of the last step, s.
     time_s: f64,
+    /// Spans of time whose impacts are kept.
+    pub(crate) recent: RecentSpans,
 }
 
 impl Plan {
@@ -116,6 +121,7 @@ impl Plan {
             origin,
             step,
             time_s: MAX_STEP_S,
+            recent: RecentSpans::default(),
         })
     }
 
@@ -242,7 +248,10 @@ impl Plan {
         for (tangent, made) in tangents.iter_mut().zip(frustum_before.tangents()) {
             *tangent = made.as_vec3().extend(0.0).to_array();
         }
+        let span = self.recent.step(origin, time_s);
         let frame = StepFrame {
+            kept_span: span.number,
+            kept_since: span.since_s as f32,
             shift: shift.as_vec3().to_array(),
             time: time_s as f32,
             elsewhere: elsewhere.into(),
@@ -254,7 +263,7 @@ impl Plan {
             regions: (list.len() as u32).saturating_sub(1),
             ..self.standing(air)
         };
-        Ok(Turn { frame, regions: list })
+        Ok(Turn { frame, regions: list, begins_span: span.is_new })
     }
 
     /// Frame of a step of duration 0.
@@ -287,7 +296,7 @@ impl Plan {
             gauge_height: (gauge.height_m - origin.y) as f32,
             gauge: options.gauge.is_some().into(),
             boxes: 0,
-            unused_1: 0,
+            kept_room: options.max_kept,
             gauge_area: {
                 let ([x0, z0], [x1, z1]) = (gauge.low_m, gauge.high_m);
                 [x0 - origin.x, z0 - origin.z, x1 - origin.x, z1 - origin.z].map(|x| x as f32)
@@ -303,7 +312,11 @@ impl Plan {
             sizes_first,
             pieces: 1,
             piece: 0,
+            kept_span: 0,
+            kept_since: 0.0,
+            unused_1: 0,
             unused_2: 0,
+            unused_3: 0,
         }
     }
 }

@@ -22,12 +22,16 @@ use crate::collision::CollisionMap;
 use crate::enter::EnterRegion;
 use crate::field::VisibleDrops;
 use crate::fill::fill;
+use crate::impacts::SplashOptions;
 use crate::motion::{motion_diameter, motion_settled, motion_table, speed_of};
 use crate::options::PIECE;
 pub use crate::options::{Bounce, Drag, Gauge, SimVolume, SimulationOptions};
 use crate::plan::{AirAtEye, Plan, Turn, lags};
 use crate::population::{Population, affordable_pixels, bins, initial_position};
-use crate::step::{StepCaught, StepDrop, StepEvent, StepFrame, StepMade, StepWorld, step_word};
+use crate::recent::SPANS;
+use crate::step::{
+    StepCaught, StepDrop, StepEvent, StepFrame, StepMade, StepWorld, step_splashes, step_word,
+};
 use crate::step_list::{Listing, listed};
 use crate::view::View;
 
@@ -106,6 +110,8 @@ pub struct Simulation {
     pub(crate) speeds: Vec<f32>,
     pub(crate) sizes: Vec<[f32; ENTER_SIZES as usize]>,
     pub(crate) drops: Vec<StepDrop>,
+    /// Impacts that may show splashes, by the spans of the plan.
+    pub(crate) kept: [Vec<StepEvent>; SPANS],
 }
 
 impl Simulation {
@@ -132,7 +138,7 @@ impl Simulation {
             plan.min_diameter = population.min_diameter;
             begin(&plan, &population, &speeds, input)?
         };
-        Ok(Self { plan, speeds, sizes, drops })
+        Ok(Self { plan, speeds, sizes, drops, kept: Default::default() })
     }
 
     /// Advances by a time of up to 1 s; the camera moves to that of the input. Times above 1/30 s are divided into
@@ -146,6 +152,9 @@ impl Simulation {
         let turns = self.plan.turns(time_s, input.view, input.origin, air)?;
         let mut outcome = StepEvents::default();
         for turn in &turns {
+            if turn.begins_span {
+                self.kept[turn.frame.kept_span as usize].clear();
+            }
             if self.plan.is_open() {
                 self.step_open(turn, input, &mut outcome)?;
             } else {
@@ -192,10 +201,12 @@ impl Simulation {
         self.drops.try_reserve(count).map_err(|_| SimError::memory((self.drops.len() + count) as u64))?;
         let mut room = frame.events as usize;
         for record in records {
+            self.keep(frame, &record);
             record.append_to(&mut room, outcome);
         }
         for (record, drops) in come {
             self.drops.extend_from_slice(&drops);
+            self.keep(frame, &record);
             record.append_to(&mut room, outcome);
         }
         Ok(())
@@ -215,8 +226,19 @@ impl Simulation {
         let pieces: Vec<EventRecord> = pieces.collect();
         let mut room = frame.events as usize;
         for record in pieces {
+            self.keep(frame, &record);
             record.append_to(&mut room, outcome);
         }
+    }
+
+    /// Keeps the impacts of a step that may show splashes.
+    fn keep(&mut self, frame: &StepFrame, record: &EventRecord) {
+        if frame.kept_room == 0 {
+            return;
+        }
+        let kept = record.events.iter().filter(|event| step_splashes(event));
+        let from_span = kept.map(|event| StepEvent { time: event.time + frame.kept_since, ..*event });
+        self.kept[frame.kept_span as usize].extend(from_span);
     }
 
     /// State: for a view in the order in which drops entered, else in the order of their numbers.
@@ -240,14 +262,22 @@ impl Simulation {
     /// Drops that a picture of the current time can show. During the exposure they move at their velocity.
     #[must_use]
     pub fn visible(&self, view: &View) -> VisibleDrops {
-        self.visible_after(0.0, view, None)
+        self.visible_after(0.0, view, None, None)
     }
 
     /// Drops that a picture can show some time after the state, s: at least half of its exposure, to include drops
-    /// that land meanwhile. Nothing is stored.
+    /// that land meanwhile; with the crowns of splashes if drops splash, which are those of the simulated drops. Nothing is stored.
     #[must_use]
-    pub fn visible_after(&self, after_s: f64, view: &View, map: Option<&CollisionMap>) -> VisibleDrops {
-        listed(&Listing { plan: &self.plan, speeds: &self.speeds, view, after_s, map }, &self.drops)
+    pub fn visible_after(
+        &self,
+        after_s: f64,
+        view: &View,
+        map: Option<&CollisionMap>,
+        splashes: Option<&SplashOptions>,
+    ) -> VisibleDrops {
+        let listing = Listing { plan: &self.plan, speeds: &self.speeds, view, after_s, map, splashes };
+        let kept = if splashes.is_some() { &self.kept[..] } else { &[] };
+        listed(&listing, &self.drops, kept)
     }
 
     /// Rate, mm/h, of the drops that fall in the volume, relative to its part that is open to the sky; for a view, in

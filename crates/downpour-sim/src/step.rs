@@ -7,9 +7,11 @@
 
 use bytemuck::{Pod, Zeroable};
 use downpour_drop::fall_speed::fall_speed_relaxation;
+use downpour_math::packing::{packing_octahedral_decode, packing_octahedral_encode};
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_shaders::sim::collision::COLLISION_SURFACE;
 use downpour_shaders::sim::enter::ENTER_SIZES;
+use downpour_shaders::sim::splash::SPLASH_LEVEL;
 use downpour_shaders::sim::step::{
     STEP_AGO_1, STEP_AGO_2, STEP_AREA, STEP_BOUNCED, STEP_CHANCE, STEP_CLEAR, STEP_COLUMN, STEP_COUNT,
     STEP_COUNT_SHIFT, STEP_DIAMETER, STEP_EVENT_KIND, STEP_FALLING, STEP_GAUGE_PER_CUBE, STEP_GONE,
@@ -81,8 +83,8 @@ pub struct StepFrame {
     pub gauge: u32,
     /// Displacement of the origin in whole boxes, not included in `shift`, packed by [`step_pack`].
     pub boxes: u32,
-    /// Padding of the WGSL layout.
-    pub unused_1: u32,
+    /// Room for the impacts of a span of time that are kept.
+    pub kept_room: u32,
     /// Rectangle of the gauge: lower x and z, upper x and z, m.
     pub gauge_area: [f32; 4],
     /// The frustum after the step.
@@ -107,8 +109,16 @@ pub struct StepFrame {
     pub pieces: u32,
     /// Index of this piece.
     pub piece: u32,
+    /// Span of time whose impacts are kept with those of this step.
+    pub kept_span: u32,
+    /// Time from its beginning to that of the step, s.
+    pub kept_since: f32,
+    /// Padding of the WGSL layout.
+    pub unused_1: u32,
     /// Padding of the WGSL layout.
     pub unused_2: u32,
+    /// Padding of the WGSL layout.
+    pub unused_3: u32,
 }
 
 /// A drop between two steps: 32 bytes.
@@ -162,6 +172,26 @@ pub struct StepEvent {
     /// Number of the drop (in a frustum its diameter and count), and in the highest two bits the kind of drop and
     /// surface.
     pub drop: u32,
+    /// Unit vector from the surface toward the side that the drop came from: octahedral ([`StepEvent::normal`]).
+    pub normal: [f32; 2],
+    /// Time from the beginning of the step to the impact, s; of an impact that is kept, from the beginning of its span.
+    pub time: f32,
+    /// With the number what the drop is known by: in a frustum the step in which it entered, else its count.
+    pub last: u32,
+}
+
+impl StepEvent {
+    /// Unit vector from the surface toward the side that the drop came from.
+    #[must_use]
+    pub fn normal(&self) -> Vec3 {
+        packing_octahedral_decode(self.normal).into()
+    }
+}
+
+/// True if an impact may make a splash: that of a drop that fell, on a surface that is not steep.
+#[must_use]
+pub fn step_splashes(event: &StepEvent) -> bool {
+    event.drop >> STEP_EVENT_KIND == 0 && event.normal().y >= SPLASH_LEVEL
 }
 
 /// Rain through the gauge.
@@ -354,6 +384,9 @@ impl StepWorld<'_> {
                 diameter,
                 velocity: velocity.to_array(),
                 drop: number | how << STEP_EVENT_KIND,
+                normal: packing_octahedral_encode(hit.normal.to_array()),
+                time: hit.fraction * frame.time,
+                last: key[1],
             });
             if kind == STEP_FALLING && hit.kind == COLLISION_SURFACE && self.step_bounces(key) {
                 kind = STEP_BOUNCED;

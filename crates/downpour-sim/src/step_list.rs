@@ -2,7 +2,8 @@
 //! `shaders/wgsl/sim/step_list.wgsl`.
 //!
 //! A drop moves from the state at its velocity. One that is stopped while the shutter is open is listed with the time
-//! at which it is, and so is the droplet that rebounds. Nothing is stored: the next step computes the same.
+//! at which it is, and so are the droplet that rebounds and the crown of the splash. Nothing is stored: the next step
+//! computes the same. Crowns of the impacts of earlier steps: [`crate::step_splash`].
 
 use bytemuck::{Pod, Zeroable};
 use downpour_math::rng::seed_words;
@@ -19,12 +20,16 @@ use rayon::prelude::*;
 use crate::collision::{CollisionHit, CollisionMap};
 use crate::falling::eye_drop_outside;
 use crate::field::{DropKind, EyeDrop, FallingDrop, VisibleDrops};
+use crate::impacts::SplashOptions;
+use crate::impacts::splash_frame::SplashFrame;
 use crate::motion::{motion_bounce, motion_diameter, motion_relax, speed_of};
 use crate::plan::Plan;
 use crate::step::{
-    StepDrop, bounces, step_column, step_count, step_image, step_kind, step_pack, step_shown, step_word,
+    StepDrop, StepEvent, bounces, step_column, step_count, step_image, step_kind, step_pack, step_shown,
+    step_word,
 };
-use crate::view::View;
+use crate::step_splash::step_splash_drop;
+use crate::view::{View, side_rows};
 use crate::volume::volume_images;
 
 /// Query for the drops of a picture.
@@ -36,21 +41,37 @@ pub(crate) struct Listing<'a> {
     pub(crate) after_s: f64,
     /// Collision map.
     pub(crate) map: Option<&'a CollisionMap>,
+    /// Splashes, if drops splash.
+    pub(crate) splashes: Option<&'a SplashOptions>,
 }
 
-/// Drops that a picture can show.
-pub(crate) fn listed(listing: &Listing<'_>, drops: &[StepDrop]) -> VisibleDrops {
+/// Drops that a picture can show; `kept` are the impacts of each span of the last steps.
+pub(crate) fn listed<E: AsRef<[StepEvent]>>(
+    listing: &Listing<'_>,
+    drops: &[StepDrop],
+    kept: &[E],
+) -> VisibleDrops {
     let frame = StepListFrame::new(listing.plan, listing.view, listing.after_s);
-    let world = StepListWorld { frame: &frame, speeds: listing.speeds, map: listing.map };
+    let splash = SplashFrame::of_picture(listing.splashes, listing.view);
+    let world = StepListWorld { frame: &frame, speeds: listing.speeds, map: listing.map, splash: &splash };
     let eye = listing.view.eye;
     let shown = |(number, drop): (usize, &StepDrop)| {
         let kind = if drop.kind() == STEP_BOUNCED { DropKind::Bounced } else { DropKind::Falling };
-        let [itself, rebound] = world.step_list_drop(number as u32, drop);
+        let [itself, rebound, crown] = world.step_list_drop(number as u32, drop);
         let in_world =
             |drop: EyeDrop, kind: DropKind| (drop.diameter > 0.0).then(|| drop.to_falling(eye, kind));
-        [in_world(itself, kind), in_world(rebound, DropKind::Bounced)].into_iter().flatten()
+        let droplets = [in_world(rebound, DropKind::Bounced), in_world(crown, DropKind::Splash)];
+        in_world(itself, kind).into_iter().chain(droplets.into_iter().flatten())
     };
-    let visible: Vec<FallingDrop> = drops.par_iter().enumerate().flat_map_iter(shown).collect();
+    let mut visible: Vec<FallingDrop> = drops.par_iter().enumerate().flat_map_iter(shown).collect();
+    let spans = listing.plan.recent.before(listing.after_s, eye);
+    for (events, span) in kept.iter().zip(spans) {
+        let crowns = events.as_ref().iter().filter_map(|event| {
+            let crown = splash.splash_crown(&step_splash_drop(event, span), event.normal())?;
+            Some(crown.to_falling(eye, DropKind::Splash))
+        });
+        visible.extend(crowns);
+    }
     VisibleDrops {
         drops: visible,
         simulated: drops.len() as u64,
@@ -135,7 +156,7 @@ impl StepListFrame {
             farthest: view.far as f32,
             size: size.as_vec3().to_array(),
             volume,
-            sides: view.sides().map(|side| side.as_vec3().extend(0.0).to_array()),
+            sides: side_rows(view.sides()),
             pane: [0.0; 4],
             seed: seed_words(plan.options.seed),
             range: (1.0 / view.least_angle(plan.least_pixels)) as f32,
@@ -186,6 +207,8 @@ pub(crate) struct StepListWorld<'a> {
     pub(crate) speeds: &'a [f32],
     /// Collision map; `None`: no obstacles.
     pub(crate) map: Option<&'a CollisionMap>,
+    /// Crowns of splashes.
+    pub(crate) splash: &'a SplashFrame,
 }
 
 /// Times of a drop that exists all the time.
@@ -317,39 +340,44 @@ impl StepListWorld<'_> {
         step_kind(word) == STEP_FALLING && bounces(self.frame.seed, key, self.frame.bounce)
     }
 
-    /// A drop and its rebounding droplet, as the picture shows them; their diameters are 0 where it does not.
-    pub(crate) fn step_list_drop(&self, number: u32, drop: &StepDrop) -> [EyeDrop; 2] {
-        let nothing = [EyeDrop::default(); 2];
+    /// A drop, its rebounding droplet and the crown of its splash, as the picture shows them; their diameters are 0 where it does not.
+    pub(crate) fn step_list_drop(&self, number: u32, drop: &StepDrop) -> [EyeDrop; 3] {
+        let nothing = EyeDrop::default();
         let kind = drop.kind();
         if kind != STEP_FALLING && kind != STEP_BOUNCED {
-            return nothing;
+            return [nothing; 3];
         }
         let place = self.step_list_place(number, drop);
         if step_kind(place.word) == STEP_HIDDEN {
-            return nothing;
+            return [nothing; 3];
         }
         let velocity = Vec3::from(drop.velocity);
-        let itself = |present: [f32; 2]| {
-            let words = [number, place.word, drop.last];
-            self.step_list_shown(&self.step_list_seen(place.position, velocity, words, present))
+        let seen = self.step_list_seen(place.position, velocity, [number, place.word, drop.last], ALWAYS);
+        let shown = self.step_list_shown(&seen);
+        let is_shown = shown.diameter > 0.0;
+        // A picture may show the crown of a drop that it would not show behind the surface.
+        let Some(map) = self.map.filter(|_| is_shown || self.splash.strength > 0.0) else {
+            return [shown, nothing, nothing];
         };
-        let [mut shown, mut rebound] = [itself(ALWAYS), EyeDrop::default()];
-        if shown.diameter == 0.0 {
-            return nothing;
+        let (after, half_time) = (self.frame.after, self.frame.half_shutter);
+        let start = place.position - velocity * after;
+        let Some(hit) = map.find(start, place.position + velocity * half_time) else {
+            return [shown, nothing, nothing];
+        };
+        let until = hit.fraction * (after + half_time) - after;
+        let falling = EyeDrop { present: [-FIELD_ALWAYS, until], ..seen };
+        let [mut itself, mut rebound, mut crown] = [nothing; 3];
+        if is_shown {
+            itself = self.step_list_shown(&falling);
         }
-        if let Some(map) = self.map {
-            let (after, half_time) = (self.frame.after, self.frame.half_shutter);
-            let start = place.position - velocity * after;
-            if let Some(hit) = map.find(start, place.position + velocity * half_time) {
-                let until = hit.fraction * (after + half_time) - after;
-                shown = itself([-FIELD_ALWAYS, until]);
-                if hit.kind == COLLISION_SURFACE && self.step_list_bounces(number, place.word, drop.last) {
-                    let keys = [number, drop.last];
-                    let droplet = self.step_list_rebound(&place, velocity, keys, &hit, until);
-                    rebound = self.step_list_shown(&droplet);
-                }
-            }
+        let on_surface = hit.kind == COLLISION_SURFACE;
+        if on_surface && step_kind(place.word) == STEP_FALLING {
+            crown = self.splash.splash_crown(&falling, hit.normal).unwrap_or(nothing);
         }
-        [shown, rebound]
+        if is_shown && on_surface && self.step_list_bounces(number, place.word, drop.last) {
+            let droplet = self.step_list_rebound(&place, velocity, [number, drop.last], &hit, until);
+            rebound = self.step_list_shown(&droplet);
+        }
+        [itself, rebound, crown]
     }
 }

@@ -273,3 +273,8 @@ fn turned(v: DVec3, axis: DVec3) -> DVec3 {
 pub(crate) fn within(sides: &[DVec3; 5], offset: DVec3, margin: f64) -> bool {
     sides.iter().all(|side| side.dot(offset) <= margin)
 }
+
+/// Normals of the sides of a picture as rows of four.
+pub(crate) fn side_rows(sides: [DVec3; 5]) -> [[f32; 4]; 5] {
+    sides.map(|side| side.as_vec3().extend(0.0).to_array())
+}

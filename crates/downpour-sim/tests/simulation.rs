@@ -360,7 +360,7 @@ fn drops_that_land_during_the_exposure_are_there_until_they_do() {
         for _ in 0..40 {
             simulation.advance(1.0 / 60.0, &now).expect("in range");
         }
-        for drop in &simulation.visible_after(half + 0.5 * wait_s, &view, Some(&map)).drops {
+        for drop in &simulation.visible_after(half + 0.5 * wait_s, &view, Some(&map), None).drops {
             let velocity = Vec3::from(drop.velocity).as_dvec3();
             let at = |time: f64| drop.position + velocity * (time - f64::from(drop.seen_s()));
             let lands = at(0.0).y / -velocity.y;

@@ -19,12 +19,10 @@ use super::streaks::StreaksTable;
 use super::wetness::{Wetness, WetnessTable};
 use super::wind::{self, GustsTable, TurbulenceTable, WindFieldTable, WindTable};
 use super::{
-    Camera, CameraPath, MAX_DRIPS, MAX_LIGHTS, MAX_MODELS, MAX_PUDDLES, RainDrag, RainVolume, Weather,
-    camera::CameraTable,
+    Camera, CameraPath, MAX_DRIPS, MAX_LIGHTS, MAX_MODELS, MAX_PUDDLES, Weather, camera::CameraTable,
 };
 use downpour_scene::error::{SceneError, quoted};
 use downpour_scene::uri::{Address, RelativePath, check};
-use downpour_wind::Wind;
 use serde::Deserialize;
 
 /// Maximum length of a file path, in bytes.
@@ -107,7 +105,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
     Ok(Weather {
         name: String::new(),
         wetness: Wetness::checked(&tables.wetness, &rain, &positions)?,
-        splashes: Splashes::checked(&tables.splashes, is_closed_form(&rain, &wind), &positions)?,
+        splashes: Splashes::checked(&tables.splashes, &positions)?,
         drips: Drips::checked(&tables.drips, &tables.drip),
         lightning: Lightning::checked(&tables.lightning, &tables.flash, rain.seed, &positions)?,
         glass: tables.glass.map(|glass| glass.checked(&heaviest, is_still, &positions)).transpose()?,
@@ -127,15 +125,6 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         keys: WeatherKeys::new(rates, camera_keys, sky_keys, sun_keys, lamp_keys, fills),
         size: tables.output.size.map_or(default.size, |Exactly(size)| size.map(|Whole(side)| side)),
     })
-}
-
-/// True if drops are found in closed form; `volume = "closed-form"` in another wind is an error of the rain.
-fn is_closed_form(rain: &Rain, wind: &Wind) -> bool {
-    match rain.volume {
-        RainVolume::ClosedForm => true,
-        RainVolume::Auto => rain.drag == RainDrag::Relaxation && wind.uniform().is_some(),
-        _ => false,
-    }
 }
 
 /// The tables of a file with those of its preset, if it names one.

@@ -26,21 +26,10 @@ impl Default for Splashes {
 }
 
 impl Splashes {
-    /// Rejects keys of splashes of a rain that goes step by step, which has none.
-    pub(super) fn checked(
-        table: &SplashesTable,
-        is_closed_form: bool,
-        positions: &Positions<'_>,
-    ) -> Result<Self, SceneError> {
+    /// Rejects keys of splashes where there are none.
+    pub(super) fn checked(table: &SplashesTable, positions: &Positions<'_>) -> Result<Self, SceneError> {
         let is_enabled = table.enabled.unwrap_or(true);
         let given = [("splashes.size", table.size.is_some()), ("splashes.film_mm", table.film_mm.is_some())];
-        let asked = given.into_iter().chain([("splashes.enabled", table.enabled == Some(true))]);
-        if let Some((key, _)) = asked.into_iter().find(|(_, given)| *given && !is_closed_form) {
-            let found = "splashes of a rain that goes step by step, which has none";
-            let allowed = "enabled = false, or a rain in closed form: rain.volume = \"auto\" or \"closed-form\", \
-                           rain.drag = \"relaxation\", uniform wind and gusts alone";
-            return Err(positions.bad(key, found, allowed));
-        }
         if let Some((key, _)) = given.iter().find(|(_, given)| *given && !is_enabled) {
             return Err(positions.bad(key, "beside enabled = false".to_owned(), "enabled = false alone"));
         }

@@ -32,25 +32,15 @@ fn bad_splashes_are_refused() {
     says("[splashes]\nenabled = 1", "splashes.enabled");
 }
 
-/// A rain that goes step by step has no splashes: who asks for them is told so.
+/// Any rain has splashes: in closed form, and step by step.
 #[test]
-fn splashes_of_stepped_rain_are_refused() {
+fn splashes_of_any_rain_have_a_size() {
     let stepped =
         ["[rain]\nvolume = 'view'", "[rain]\ndrag = 'rousseau-2008'", "[turbulence]\nspeed_m_s = 1"];
-    for rain in stepped {
-        for key in ["size = 2", "film_mm = 1", "enabled = true"] {
-            let name = key.split(' ').next().expect("a key");
-            let expected = format!(
-                "rain.toml: line 4, column 1: splashes.{name}: splashes of a rain that goes step by step"
-            );
-            says(&format!("{rain}\n[splashes]\n{key}"), &expected);
-            says(&format!("{rain}\n[splashes]\n{key}"), "allowed: enabled = false, or a rain in closed form");
-        }
+    let wind = "[[wind]]\nuniform = { speed_m_s = 3, towards_deg = 40 }\n[gusts]\nintensity = 0.2";
+    for rain in stepped.into_iter().chain(["[rain]\nvolume = 'closed-form'", "[rain]\nrate_mm_h = 9", wind]) {
+        assert_eq!(parsed(&format!("{rain}\n[splashes]\nsize = 2")).size, 2.0, "{rain}");
         assert!(!parsed(&format!("{rain}\n[splashes]\nenabled = false")).is_enabled);
         assert!(parsed(rain).is_enabled);
-    }
-    let wind = "[[wind]]\nuniform = { speed_m_s = 3, towards_deg = 40 }\n[gusts]\nintensity = 0.2";
-    for rain in ["[rain]\nvolume = 'closed-form'", "[rain]\nrate_mm_h = 9", wind] {
-        assert_eq!(parsed(&format!("{rain}\n[splashes]\nsize = 2")).size, 2.0);
     }
 }

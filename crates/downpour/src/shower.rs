@@ -73,7 +73,12 @@ pub enum ShowerRain {
     },
     /// Step by step, on the device.
     #[cfg(feature = "wgpu")]
-    Stepped(SteppedPicture),
+    Stepped {
+        /// The drops.
+        picture: SteppedPicture,
+        /// Splashes that the device is to find.
+        splashes: Option<SplashOptions>,
+    },
 }
 
 /// The rain of a weather.
@@ -169,10 +174,10 @@ impl Shower {
             .map_or(Ok(Vec::new()), |dripping| dripping.visible(frame_scene, view, least, time_s))
     }
 
-    /// True if drops splash: those in closed form, where there is rain.
+    /// True if drops splash, where there is rain.
     #[must_use]
     pub fn has_splashes(&self) -> bool {
-        self.is_closed_form() && self.splashes.is_some() && self.law.rate_mm_h() > 0.0
+        self.splashes.is_some() && self.law.rate_mm_h() > 0.0
     }
 
     /// True if something may drip.
@@ -226,7 +231,9 @@ impl Shower {
                 let impacts = (self.splashes.as_ref(), Some(&self.bounce));
                 drops_among(field, &obstacles, &view, time_s, impacts)?
             }
-            Form::Stepped(stepped) => stepped.at(scenery, frame_scene, time_s, passed)?,
+            Form::Stepped(stepped) => {
+                stepped.at(scenery, frame_scene, time_s, self.splashes.as_ref(), passed)?
+            }
         };
         let view = View { max_drops: self.weather.rain.max_drops, ..frame_scene.view()? };
         let dripped = self.drips(frame_scene, &view, visible.resolved.least_pixels, time_s)?;
@@ -320,7 +327,8 @@ impl Shower {
         if let Some(pane) = &pane {
             keep_outside(&mut droplets, pane, &view);
         }
-        Ok(ShowerView { rain: ShowerRain::Stepped(picture), time_s, view, resolved, pane, droplets })
+        let rain = ShowerRain::Stepped { picture, splashes: self.splashes };
+        Ok(ShowerView { rain, time_s, view, resolved, pane, droplets })
     }
 
     /// The drops of a device a little later than those of `shown`, at `time_s`, as a picture of part of its exposure shows them.
@@ -335,10 +343,11 @@ impl Shower {
     ) -> Result<ShowerView, ShowerError> {
         match &shown.rain {
             #[cfg(feature = "wgpu")]
-            ShowerRain::Stepped(picture) => {
+            ShowerRain::Stepped { picture, splashes } => {
                 let least_pixels = shown.view.least_pixels;
                 let view = View { least_pixels, ..frame_scene.view()? };
-                let rain = ShowerRain::Stepped(picture.later(time_s - shown.time_s));
+                let picture = picture.later(time_s - shown.time_s);
+                let rain = ShowerRain::Stepped { picture, splashes: *splashes };
                 Ok(ShowerView { rain, view, time_s, ..shown.clone() })
             }
             ShowerRain::Closed { field, max_room, .. } => {

@@ -6,10 +6,10 @@ use crate::common::{INVOCATION, RNG};
 use crate::{Kernel, Module};
 
 /// Every module of this file.
-pub const MODULES: &[&Module] = &[&SPLASH_CONSTANTS, &IMPACT, &SPLASH];
+pub const MODULES: &[&Module] = &[&SPLASH_CONSTANTS, &IMPACT, &SPLASH, &SPLASH_FIND];
 
 /// Every kernel of this file.
-pub const KERNELS: &[&Kernel] = &[&SPLASH_KERNEL];
+pub const KERNELS: &[&Kernel] = &[&SPLASH_FIND_KERNEL];
 
 shared_constants! {
     /// Laws of splashes (`downpour_drop::splash`), and what of them is drawn at random.
@@ -51,8 +51,16 @@ pub static IMPACT: Module =
 pub static SPLASH: Module = Module {
     path: "sim/splash.wgsl",
     wgsl: include_str!("../../wgsl/sim/splash.wgsl"),
-    uses: &[&FIELD_CONSTANTS, &SPLASH_CONSTANTS, &EYE_DROP, &INVOCATION, &RNG, &BVH, &IMPACT],
+    uses: &[&FIELD_CONSTANTS, &SPLASH_CONSTANTS, &EYE_DROP, &RNG],
+};
+
+/// Search for the crowns of a slice of time. Twin: `downpour_sim::impacts::splash_frame`.
+pub static SPLASH_FIND: Module = Module {
+    path: "sim/splash_find.wgsl",
+    wgsl: include_str!("../../wgsl/sim/splash_find.wgsl"),
+    uses: &[&SPLASH, &INVOCATION, &BVH, &IMPACT],
 };
 
 /// One invocation per drop of a slice of time.
-pub static SPLASH_KERNEL: Kernel = Kernel { entry: "main_splash", module: &SPLASH, workgroup: [64, 1, 1] };
+pub static SPLASH_FIND_KERNEL: Kernel =
+    Kernel { entry: "main_splash_find", module: &SPLASH_FIND, workgroup: [64, 1, 1] };

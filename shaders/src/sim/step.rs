@@ -1,7 +1,8 @@
 //! Motion of drops, and the volume that they move in.
 
 use super::collision::COLLISION;
-use crate::common::RNG;
+use super::splash::SPLASH_CONSTANTS;
+use crate::common::{PACKING, RNG};
 use crate::drop::fall_speed::FALL_SPEED;
 use crate::wind::FIELD;
 use crate::{Kernel, Module};
@@ -103,6 +104,14 @@ shared_constants! {
         STEP_CLEAR: f32 = 1.0e-3;
         /// Shift of the kind of impact in an event's word.
         STEP_EVENT_KIND: u32 = 30;
+        /// Mask of the bits of that word that number the drop.
+        STEP_EVENT_DROP: u32 = 0x3fffffff;
+        /// Number of counters of events.
+        STEP_COUNTS: u32 = 5;
+        /// Spans of time whose impacts are kept, each with a counter.
+        STEP_SPANS: u32 = 8;
+        /// Number of all counters.
+        STEP_COUNTERS: u32 = 13;
         /// pi / 6 in units of the gauge, 1e-13 m^3.
         STEP_GAUGE_PER_CUBE: f32 = 5.2359878e12;
     }
@@ -126,7 +135,7 @@ pub static VOLUME: Module = Module {
 pub static STEP: Module = Module {
     path: "sim/step.wgsl",
     wgsl: include_str!("../../wgsl/sim/step.wgsl"),
-    uses: &[&STEP_CONSTANTS, &MOTION, &VOLUME, &COLLISION, &FIELD, &RNG],
+    uses: &[&STEP_CONSTANTS, &SPLASH_CONSTANTS, &MOTION, &VOLUME, &COLLISION, &FIELD, &PACKING, &RNG],
 };
 
 /// One invocation per drop.

@@ -53,7 +53,8 @@ struct StepFrame {
     gauge: u32,
     // Displacement of the origin in whole boxes, not included in `shift`, packed by `step_pack`.
     boxes: u32,
-    unused_1: u32,
+    // Room for the impacts of a span of time that are kept.
+    kept_room: u32,
     // Rectangle of the gauge: lower x and z, upper x and z, m.
     gauge_area: vec4f,
     // Frustum after the step, and before it, both relative to the current origin.
@@ -74,7 +75,12 @@ struct StepFrame {
     // Number of pieces of the drops, and index of this one.
     pieces: u32,
     piece: u32,
+    // Span of time whose impacts are kept with those of this step, and time from its beginning to that of the step, s.
+    kept_span: u32,
+    kept_since: f32,
+    unused_1: u32,
     unused_2: u32,
+    unused_3: u32,
 }
 
 // A drop between two steps.
@@ -112,6 +118,12 @@ struct StepEvent {
     // Number of the drop (in a frustum its diameter and count), and in the highest two bits the kind of drop and
     // surface: COLLISION_* - 1, and 2 more for a bounced drop.
     drop: u32,
+    // Unit vector from the surface toward the side that the drop came from: octahedral.
+    normal: vec2f,
+    // Time from the beginning of the step to the impact, s; of an impact that is kept, from the beginning of its span.
+    time: f32,
+    // With the number what the drop is known by: in a frustum the step in which it entered, else its count.
+    last: u32,
 }
 
 @group(0) @binding(0) var<uniform> step_frame: StepFrame;
@@ -122,10 +134,11 @@ struct StepEvent {
 // Bits of the terminal speeds; sizes of the bins; regions of entering drops.
 @group(0) @binding(3) var<storage, read> step_tables: array<u32>;
 @group(0) @binding(4) var<storage, read> step_cells: array<vec4f>;
+// Impacts since they were last taken, and behind them those of each span of time that are kept.
 @group(0) @binding(5) var<storage, read_write> step_events: array<StepEvent>;
 // Counters: events; drops through the gauge; their volume in units of STEP_GAUGE_UNIT, low and high word; drops
-// without slot.
-@group(0) @binding(6) var<storage, read_write> step_counts: array<atomic<u32>, 5>;
+// without slot; impacts of each span that are kept.
+@group(0) @binding(6) var<storage, read_write> step_counts: array<atomic<u32>, STEP_COUNTERS>;
 @group(0) @binding(7) var<uniform> step_grid: WindFieldGrid;
 
 // Kind of a drop.
@@ -210,11 +223,25 @@ fn step_coming(at: vec3f, speed: f32) -> vec3f {
     return motion_settled(kept + lag, speed);
 }
 
-// Records an impact; if the buffer is full it is only counted.
-fn step_note(position: vec3f, diameter: f32, velocity: vec3f, drop: u32) {
+// True if an impact may make a splash: that of a drop that fell, on a surface that is not steep.
+fn step_splashes(event: StepEvent) -> bool {
+    return event.drop >> STEP_EVENT_KIND == 0u && packing_octahedral_decode(event.normal).y >= SPLASH_LEVEL;
+}
+
+// Records an impact, and keeps it if it may make a splash; where there is no room it is only counted.
+fn step_note(event: StepEvent) {
     let slot = atomicAdd(&step_counts[0], 1u);
     if slot < step_frame.events {
-        step_events[slot] = StepEvent(position, diameter, velocity, drop);
+        step_events[slot] = event;
+    }
+    if step_frame.kept_room > 0u && step_splashes(event) {
+        let span = step_frame.kept_span;
+        let place = atomicAdd(&step_counts[STEP_COUNTS + span], 1u);
+        if place < step_frame.kept_room {
+            var kept = event;
+            kept.time += step_frame.kept_since;
+            step_events[step_frame.events + span * step_frame.kept_room + place] = kept;
+        }
     }
 }
 
@@ -285,7 +312,15 @@ fn step_fly(key: vec2u, number: u32, word: u32, flight: StepFlight) -> StepFligh
             if hit.kind != COLLISION_OPEN {
                 let at = flight.position + displacement * hit.fraction;
                 let how = hit.kind - 1u + select(0u, 2u, kind == STEP_BOUNCED);
-                step_note(at, diameter, velocity, number | how << STEP_EVENT_KIND);
+                step_note(StepEvent(
+                    at,
+                    diameter,
+                    velocity,
+                    number | how << STEP_EVENT_KIND,
+                    packing_octahedral_encode(hit.normal),
+                    hit.fraction * step_frame.time,
+                    key.y,
+                ));
                 let chance = rng_unit(rng_draw(step_frame.seed, key.x, key.y, STEP_CHANCE).x);
                 if kind == STEP_FALLING && hit.kind == COLLISION_SURFACE && chance < step_frame.bounce {
                     kind = STEP_BOUNCED;

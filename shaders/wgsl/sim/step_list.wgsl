@@ -1,7 +1,8 @@
 // Drops of a state that a picture shows: where they are at its time, and the part of the exposure in which they exist.
 //
 // A drop moves from the state at its velocity. One that is stopped while the shutter is open is listed with the time at
-// which it is, and so is the droplet that rebounds. Nothing is stored: the next step computes the same.
+// which it is, and so are the droplet that rebounds and the crown of the splash. Nothing is stored: the next step computes the same.
+// Crowns of earlier steps' impacts: step_splash.wgsl.
 // Twin: downpour_sim::step_list.
 
 struct StepListFrame {
@@ -53,15 +54,18 @@ struct StepListPlace {
     word: u32,
 }
 
-// A drop and the droplet that rebounds from what stops it; their diameters are 0 where the picture does not show them.
+// A drop, and the droplet that rebounds from what stops it and the crown of its splash; their diameters are 0 where the picture does
+// not show them.
 struct StepListShown {
     itself: EyeDrop,
     rebound: EyeDrop,
+    crown: EyeDrop,
 }
 
 @group(0) @binding(11) var<uniform> step_list_frame: StepListFrame;
 @group(0) @binding(12) var<storage, read_write> step_list_drops: array<EyeDrop>;
-// Drops that were found, of which those beyond the room are lost; drops that were looked at; drops that entered and found no slot.
+// Drops that were found, of which those beyond the room are lost; drops that were looked at; drops that entered and found no slot, and
+// impacts that were not kept.
 @group(0) @binding(13) var<storage, read_write> step_list_found: array<atomic<u32>, 3>;
 
 // Id of a drop by what it is known by, constant while the drop exists: a Feistel network, which maps no two of 64 bits to one. Droplets of a
@@ -190,23 +194,28 @@ fn step_list_drop(number: u32, drop: StepDrop) -> StepListShown {
         return shown;
     }
     let always = vec2f(-FIELD_ALWAYS, FIELD_ALWAYS);
-    shown.itself = step_list_shown(step_list_seen(place.position, drop.velocity, number, place.word, drop.last, always));
-    if shown.itself.diameter == 0.0 {
-        return shown;
-    }
-    if STEP_COLLIDES {
+    let seen = step_list_seen(place.position, drop.velocity, number, place.word, drop.last, always);
+    shown.itself = step_list_shown(seen);
+    let is_shown = shown.itself.diameter > 0.0;
+    // A picture may show the crown of a drop that it would not show behind the surface.
+    if STEP_COLLIDES && (is_shown || splash_frame.strength > 0.0) {
         let half_time = step_list_frame.half_shutter;
         let start = place.position - drop.velocity * step_list_frame.after;
         let hit = collision_find(start, place.position + drop.velocity * half_time);
-        if hit.kind != COLLISION_OPEN {
-            let until = hit.fraction * (step_list_frame.after + half_time) - step_list_frame.after;
-            let falling = vec2f(-FIELD_ALWAYS, until);
-            shown.itself =
-                step_list_shown(step_list_seen(place.position, drop.velocity, number, place.word, drop.last, falling));
-            if hit.kind == COLLISION_SURFACE && step_list_bounces(number, place.word, drop.last) {
-                shown.rebound =
-                    step_list_shown(step_list_rebound(place, drop.velocity, number, drop.last, hit, until));
-            }
+        if hit.kind == COLLISION_OPEN {
+            return shown;
+        }
+        let until = hit.fraction * (step_list_frame.after + half_time) - step_list_frame.after;
+        var falling = seen;
+        falling.present.y = until;
+        if is_shown {
+            shown.itself = step_list_shown(falling);
+        }
+        if hit.kind == COLLISION_SURFACE && step_kind(place.word) == STEP_FALLING {
+            shown.crown = splash_crown(falling, hit.normal);
+        }
+        if is_shown && hit.kind == COLLISION_SURFACE && step_list_bounces(number, place.word, drop.last) {
+            shown.rebound = step_list_shown(step_list_rebound(place, drop.velocity, number, drop.last, hit, until));
         }
     }
     return shown;
@@ -252,4 +261,5 @@ fn main_step_list(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgro
     let shown = step_list_drop(step_list_frame.first + slot, drop);
     step_list_add(shown.itself);
     step_list_add(shown.rebound);
+    step_list_add(shown.crown);
 }

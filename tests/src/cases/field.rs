@@ -13,7 +13,7 @@ use downpour_shaders::render::scene::{SCENE_DOUBLE_SIDED, SCENE_MASKED};
 use downpour_shaders::sim::field::{
     DRIFT, EYE_DROP, FIELD, FIELD_CLEAR_KERNEL, FIELD_FIND_KERNEL, SHELTER_AMONG_HOLES_KERNEL, SHELTER_KERNEL,
 };
-use downpour_shaders::sim::splash::{SPLASH, SPLASH_KERNEL};
+use downpour_shaders::sim::splash::{SPLASH, SPLASH_FIND_KERNEL};
 use downpour_sim::field::chain::{FieldTime, field_between, field_fallen, field_fraction, field_part};
 use downpour_sim::field::thinning::{field_interval, field_is_below, field_less};
 use downpour_sim::field::{
@@ -513,7 +513,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         let tol = Tol::absolute(wander, "meters and seconds; crowns at an edge, and at the ends of slices");
         KernelCase {
             with: OF_CROWNS,
-            ..KernelCase::new(name, &SPLASH_KERNEL, tol.with_outliers(6.0e-3), run)
+            ..KernelCase::new(name, &SPLASH_FIND_KERNEL, tol.with_outliers(6.0e-3), run)
         }
     };
     let shelter = |name, run| among(&SHELTER_KERNEL, name, run);
@@ -545,12 +545,12 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         leaves("main_shelter: holes, landing", |gpu| {
             landing_case(gpu, Kind { has_holes: true, ..kind(gusty, 11.3, 0.1) })
         }),
-        crowns("main_splash: steady wind", 1.0e-4, |gpu| {
+        crowns("main_splash_find: steady wind", 1.0e-4, |gpu| {
             crowns_case(gpu, Kind { far: true, ..kind(steady, 7.125, 1.0 / 60.0) })
         }),
         // Paths are straight in other spans of time.
-        crowns("main_splash: gusts", 4.0e-3, |gpu| crowns_case(gpu, kind(gusty, 11.3, 1.0 / 60.0))),
-        crowns("main_splash: holes, behind a pane", 1.0e-4, |gpu| {
+        crowns("main_splash_find: gusts", 4.0e-3, |gpu| crowns_case(gpu, kind(gusty, 11.3, 1.0 / 60.0))),
+        crowns("main_splash_find: holes, behind a pane", 1.0e-4, |gpu| {
             let pane = Some([0.0, 0.6, -0.8, 0.5]);
             crowns_case(gpu, Kind { has_holes: true, pane, ..kind(steady, 3.3, 1.0 / 60.0) })
         }),

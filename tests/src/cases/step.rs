@@ -4,17 +4,23 @@ use std::cmp::Ordering;
 
 use downpour_bvh::Bvh;
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
+use downpour_drop::splash::{FILM_M, SplashLaw};
 use downpour_gpu::{Gpu, GpuError};
 use downpour_math::ops;
+use downpour_math::packing::packing_octahedral_encode;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_shaders::Kernel;
 use downpour_shaders::sim::enter::{ENTER, ENTER_KERNEL};
+use downpour_shaders::sim::splash::SPLASH_LEVEL;
 use downpour_shaders::sim::step::{MOTION, STEP, STEP_GONE, STEP_KERNEL, VOLUME, VOLUME_BALL};
-use downpour_shaders::sim::step_list::{STEP_LIST, STEP_LIST_CLEAR_KERNEL, STEP_LIST_KERNEL};
+use downpour_shaders::sim::step_list::{
+    STEP_LIST, STEP_LIST_CLEAR_KERNEL, STEP_LIST_KERNEL, STEP_SPLASH, STEP_SPLASH_KERNEL,
+};
 use downpour_sim::collision::{CollisionMap, CollisionOptions};
 use downpour_sim::enter::{EnterRegion, enter_chance, enter_code, enter_offset};
 use downpour_sim::field::{DropKind, EyeDrop, FallingDrop};
 use downpour_sim::gpu::{CollisionMapOnGpu, GpuSimError, GpuSimulation, GpuStepInput, StepPicture};
+use downpour_sim::impacts::SplashOptions;
 use downpour_sim::motion::{
     motion_average, motion_bounce, motion_diameter, motion_relax, motion_settled, motion_table_entry,
     motion_table_speed,
@@ -23,9 +29,11 @@ use downpour_sim::simulation::{
     Bounce, Drag, Gauge, SimVolume, Simulation, SimulationOptions, StepEvents, StepInput,
 };
 use downpour_sim::step::{
-    StepDrop, step_column, step_count, step_image, step_kind, step_measure, step_pack, step_shown, step_word,
+    StepDrop, StepEvent, step_column, step_count, step_image, step_kind, step_measure, step_pack, step_shown,
+    step_splashes, step_word,
 };
 use downpour_sim::step_list::step_list_id;
+use downpour_sim::step_splash::step_splash_drop;
 use downpour_sim::view::View;
 use downpour_sim::volume::{
     VolumeEye, VolumeFrustum, volume_images, volume_in_area, volume_in_sphere, volume_limit, volume_local,
@@ -170,6 +178,33 @@ fn region(args: &mut Args<'_>) -> EnterRegion {
         width: args.f32(),
         middle: args.f32(),
         unused: args.u32(),
+    }
+}
+
+/// The words of a `StepEvent`: half of them of drops that fell onto a surface, many of those nearly as steep as splashes allow.
+fn event_words(random: [u32; 4]) -> Vec<u32> {
+    let [a, b, c, d] = random.map(rng_unit);
+    let level = SPLASH_LEVEL + 0.2 * (d - 0.5);
+    let (across, phi) = ((1.0 - level * level).sqrt(), std::f32::consts::TAU * a);
+    let normal = [across * ops::cos(phi), level, across * ops::sin(phi)];
+    let mut words = [4.0 * a - 2.0, 4.0 * b - 2.0, 4.0 * c - 2.0, 1.0e-3 + 4.0e-3 * d].words();
+    words.extend([3.0 * b - 1.0, -9.0 * c, 3.0 * d - 1.0].words());
+    let kind = if random[1].is_multiple_of(2) { 0 } else { random[1] >> 30 };
+    words.push((random[0] >> 2) | (kind << 30));
+    words.extend(packing_octahedral_encode(normal).words());
+    words.extend([(0.016 * b).to_bits(), random[2]]);
+    words
+}
+
+fn event(args: &mut Args<'_>) -> StepEvent {
+    StepEvent {
+        position: args.f32s(),
+        diameter: args.f32(),
+        velocity: args.f32s(),
+        drop: args.u32(),
+        normal: args.f32s(),
+        time: args.f32(),
+        last: args.u32(),
     }
 }
 
@@ -334,6 +369,28 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &[AnyWord, AnyWord],
             Tol::exact("integers are exact"),
             |a| step_list_id(a.u32(), a.u32()).words(),
+        ),
+        FunctionCase::new(
+            "step_splashes",
+            &STEP,
+            &[Made(event_words)],
+            Tol::exact("a comparison of a normal that a GPU may round otherwise").with_outliers(1.0e-3),
+            |a| u32::from(step_splashes(&event(a))).words(),
+        ),
+        FunctionCase::new(
+            "step_splash_drop",
+            &STEP_SPLASH,
+            &[Made(event_words), near, near, near, Uniform(0.0, 0.1)],
+            Tol::absolute(3.0e-6, "sums of positions up to 12 m and a product"),
+            |a| {
+                let (event, span) = (event(a), a.f32s());
+                let drop = step_splash_drop(&event, span);
+                let mut words = (drop.offset, [drop.diameter]).words();
+                words.extend((drop.velocity, drop.id).words());
+                words.extend((drop.present, [drop.speed]).words());
+                words.extend(drop.id_low.words());
+                words
+            },
         ),
         FunctionCase::new(
             "step_column",
@@ -567,13 +624,27 @@ struct Listed {
     pane: Option<[f32; 4]>,
     /// Time from the state to the picture, s.
     after_s: f64,
+    /// Drops splash; only their crowns are compared.
+    splashes: bool,
+    /// The last steps before the state are the device's.
+    on_device: bool,
 }
 
-const IN_BOX: Listed = Listed { volume: BOX, walls: true, low: false, pane: None, after_s: 0.04 };
+const IN_BOX: Listed = Listed {
+    volume: BOX,
+    walls: true,
+    low: false,
+    pane: None,
+    after_s: 0.04,
+    splashes: false,
+    on_device: false,
+};
 
 /// The drops of a state that a picture shows, listed on both sides: some of them land or come in again while the shutter is open.
 fn list_case(gpu: &Gpu, setup: Listed) -> Result<Run, GpuError> {
-    let Listed { volume, walls, low, pane, after_s } = setup;
+    let Listed { volume, walls, low, pane, after_s, splashes, on_device } = setup;
+    let splashes =
+        splashes.then(|| SplashOptions { law: SplashLaw::new(FILM_M, 20.0).expect("a law"), size: 1.5 });
     let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 50.0).expect("a rain");
     let shutter_s = 0.05;
     let options = SimulationOptions {
@@ -596,28 +667,38 @@ fn list_case(gpu: &Gpu, setup: Listed) -> Result<Run, GpuError> {
     let first = eye(0);
     // That of the map.
     let origin = if walls { DVec3::ZERO } else { DVec3::new(0.5, 0.0, -1.0) };
-    let start = StepInput { map: map.as_ref(), ..StepInput::new(&first, origin, Vec3::new(4.0, 0.0, -1.0)) };
+    let wind = Vec3::new(4.0, 0.0, -1.0);
+    let start = StepInput { map: map.as_ref(), ..StepInput::new(&first, origin, wind) };
+    let on_gpu = map.as_ref().map(|map| CollisionMapOnGpu::upload(gpu, map)).transpose()?;
     let mut cpu = Simulation::new(&rain, &options, &start).expect("a simulation");
-    for step in 1..=20 {
+    let advance = |cpu: &mut Simulation, step: u32| {
         cpu.advance(1.0 / 60.0, &StepInput { view: &eye(step), ..start }).expect("a step");
+    };
+    let same = if on_device { 17 } else { 20 };
+    (1..=same).for_each(|step| advance(&mut cpu, step));
+    let mut twin = GpuSimulation::from_cpu(gpu, &cpu)?;
+    for step in same + 1..=20 {
+        advance(&mut cpu, step);
+        let shown = eye(step);
+        let input = GpuStepInput { map: on_gpu.as_ref(), ..GpuStepInput::new(&shown, origin, wind) };
+        twin.advance(1.0 / 60.0, &input).map_err(of_gpu)?;
     }
-    let twin = GpuSimulation::from_cpu(gpu, &cpu)?;
     let shown = eye(21);
-    let listed = cpu.visible_after(after_s, &shown, map.as_ref());
+    let listed = cpu.visible_after(after_s, &shown, map.as_ref(), splashes.as_ref());
     let outside = |drop: &FallingDrop| match pane {
         Some([x, y, z, distance]) => drop.beyond(Vec3::new(x, y, z), distance, &shown),
         None => Some(*drop),
     };
     // On the CPU a list does not say how fast drops fall in still air.
     let with_speed = |drop: FallingDrop| {
-        let speed = f32::from(u8::from(drop.kind == DropKind::Falling));
-        EyeDrop { speed, ..EyeDrop::new(&drop, shown.eye) }
+        let seen = EyeDrop::new(&drop, shown.eye);
+        EyeDrop { speed: if drop.kind == DropKind::Falling { 1.0 } else { seen.speed }, ..seen }
     };
     let expected: Vec<EyeDrop> = listed.drops.iter().filter_map(outside).map(with_speed).collect();
-    let on_gpu = map.as_ref().map(|map| CollisionMapOnGpu::upload(gpu, map)).transpose()?;
     let known = [EyeDrop { diameter: 3.0e-3, ..EyeDrop::default() }; 3];
+    let (map, splashes) = (on_gpu.as_ref(), splashes.as_ref());
     let picture =
-        StepPicture { view: &shown, after_s, map: on_gpu.as_ref(), pane, known: &known, max_room: 1 << 20 };
+        StepPicture { view: &shown, after_s, map, pane, known: &known, splashes, max_room: 1 << 20 };
     let pass = twin.list(gpu, &picture).map_err(of_gpu)?;
     let poison = vec![f32::from_bits(crate::compare::POISON); 12 * pass.list().room() as usize];
     let after_known = (known.len() * size_of::<EyeDrop>()) as u64;
@@ -631,6 +712,16 @@ fn list_case(gpu: &Gpu, setup: Listed) -> Result<Run, GpuError> {
     let has_enough =
         expected.len() > 200 && (!walls || landing > 10) && (!low || rebound * 16 > expected.len());
     assert!(has_enough, "{} drops, {landing} land, {rebound} rebound", expected.len());
+    let mut expected = expected;
+    if splashes.is_some() {
+        for drops in [&mut expected, &mut made] {
+            drops.retain(|drop| drop.speed < 0.0);
+        }
+        // Of earlier steps, and of the time since.
+        let earlier = expected.iter().filter(|drop| f64::from(-drop.present[0]) > after_s).count();
+        let enough = earlier > 20 && (after_s == 0.0 || expected.len() > earlier + 10);
+        assert!(enough, "{} crowns, {earlier} earlier", expected.len());
+    }
     let key = |drop: &EyeDrop| (drop.id ^ drop.id_low, drop.id_low, drop.present[0] > -1.0);
     let words = |drops: Vec<EyeDrop>| -> Vec<(_, [u32; 12])> {
         let mut rows: Vec<_> = drops
@@ -639,7 +730,8 @@ fn list_case(gpu: &Gpu, setup: Listed) -> Result<Run, GpuError> {
                 let [x, y, z] = drop.offset.map(f32::to_bits);
                 let [u, v, w] = drop.velocity.map(f32::to_bits);
                 let [begin, end] = drop.present.map(f32::to_bits);
-                let falls = u32::from(drop.speed > 0.0);
+                // Falls, is a droplet, or a crown.
+                let falls = (1.0 + drop.speed.clamp(-1.0, 1.0)) as u32;
                 (
                     key(drop),
                     [x, y, z, drop.diameter.to_bits(), u, v, w, drop.id, begin, end, falls, drop.id_low],
@@ -764,6 +856,9 @@ const STEPPED: Tol = Tol::absolute(
 /// The kernel that clears a list before it is filled.
 const LIST_CLEARED: &[&Kernel] = &[&STEP_LIST_CLEAR_KERNEL];
 
+/// The kernels before that of earlier splashes.
+const LISTED_BEFORE: &[&Kernel] = &[&STEP_LIST_CLEAR_KERNEL, &STEP_LIST_KERNEL];
+
 const LISTED: Tol = Tol::absolute(
     2.0e-5,
     "positions up to 10 m after a product and sums, of those that rebound after an exponential; a drop that grazes an edge or a \
@@ -856,6 +951,33 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         list("main_step_list: a view low above a floor", &[("STEP_FIELD", 0.0)], |gpu| {
             list_case(gpu, Listed { volume: SimVolume::View, low: true, ..IN_BOX })
         }),
+        KernelCase {
+            with: LISTED_BEFORE,
+            ..KernelCase::new(
+                "main_step_splash: a view low above a floor, behind a pane",
+                &STEP_SPLASH_KERNEL,
+                LISTED,
+                |gpu| {
+                    let pane = Some([0.6, 0.0, -0.8, 0.2]);
+                    let volume = SimVolume::View;
+                    let splashing = Listed { low: true, splashes: true, after_s: 0.01, pane, ..IN_BOX };
+                    list_case(gpu, Listed { volume, ..splashing })
+                },
+            )
+        },
+        KernelCase {
+            with: LISTED_BEFORE,
+            ..KernelCase::new(
+                "main_step_splash: a box low above a floor, steps of the device",
+                &STEP_SPLASH_KERNEL,
+                LISTED,
+                |gpu| {
+                    let of_device =
+                        Listed { low: true, splashes: true, on_device: true, after_s: 0.01, ..IN_BOX };
+                    list_case(gpu, of_device)
+                },
+            )
+        },
         list("main_step_list: a box low above a floor", &[("STEP_FIELD", 0.0)], |gpu| {
             list_case(gpu, Listed { low: true, ..IN_BOX })
         }),

@@ -11,7 +11,7 @@ use crate::SimError;
 use crate::drift::Drift;
 use crate::field::chain::FieldTime;
 use crate::resolved::Resolved;
-use crate::view::{Bounds, View};
+use crate::view::{Bounds, View, side_rows};
 
 /// Columns of a class that a picture may show.
 #[repr(C)]
@@ -213,8 +213,8 @@ impl RainField {
         }
         let time = FieldTime::new(time_s);
         let frame = FieldFrame {
-            sides: field_normals(view.sides()),
-            swept: field_normals(view.swept_sides()),
+            sides: side_rows(view.sides()),
+            swept: side_rows(view.swept_sides()),
             velocity: view.velocity.as_vec3(),
             half_shutter: (0.5 * view.shutter_s) as f32,
             turning: view.turning.as_vec3(),
@@ -243,11 +243,6 @@ impl RainField {
     pub(crate) fn nodes_of_class(&self) -> u32 {
         self.classes.first().map_or(0, |class| class.sizes.nodes.len() as u32)
     }
-}
-
-/// Normals of the sides of a picture as rows.
-pub(crate) fn field_normals(sides: [DVec3; 5]) -> [[f32; 4]; FIELD_SIDES as usize] {
-    sides.map(|side| side.as_vec3().extend(0.0).to_array())
 }
 
 impl Class {

@@ -12,7 +12,7 @@ use downpour_shaders::sim::bounce::{
 use downpour_shaders::sim::field::{
     FIELD_CLEAR_KERNEL, FIELD_FIND_KERNEL, FIELD_LANES, SHELTER_AMONG_HOLES_KERNEL, SHELTER_KERNEL,
 };
-use downpour_shaders::sim::splash::SPLASH_KERNEL;
+use downpour_shaders::sim::splash::SPLASH_FIND_KERNEL;
 use downpour_wind::UniformWind;
 use glam::{DVec3, Vec3};
 
@@ -23,7 +23,7 @@ use crate::field::frame::{FieldQuery, ShelterFrame};
 use crate::field::{EyeDrop, RainField, check_time};
 use crate::impacts::SplashOptions;
 use crate::impacts::bounce_frame::{BounceParts, BounceSearch, MAX_DROPLETS};
-use crate::impacts::splash_frame::SplashSearch;
+use crate::impacts::splash_search::SplashSearch;
 use crate::options::Bounce;
 use crate::resolved::Resolved;
 use crate::shelter::{CUT_S, MAX_BACK_S, number_of_cuts};
@@ -161,7 +161,7 @@ impl FieldPipeline {
             find: kernel(&FIELD_FIND_KERNEL)?,
             shelter: kernel(&SHELTER_KERNEL)?,
             among_holes: OnceLock::new(),
-            splash: kernel(&SPLASH_KERNEL)?,
+            splash: kernel(&SPLASH_FIND_KERNEL)?,
             bounce: OnceLock::new(),
             bounce_hit: OnceLock::new(),
             bounce_hit_among_holes: OnceLock::new(),

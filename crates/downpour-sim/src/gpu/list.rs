@@ -56,7 +56,8 @@ impl DropListOnGpu {
     }
 
     /// Three numbers on the device: drops that were found before obstacles stopped some of them, of which those beyond the room are
-    /// lost; drops that were looked at; of stepped rain, drops that had no room among its drops.
+    /// lost; drops that were looked at; of stepped rain, drops that had no room among its drops, and impacts that had none among those
+    /// that are kept for splashes.
     #[must_use]
     pub fn counts(&self) -> &wgpu::Buffer {
         &self.found

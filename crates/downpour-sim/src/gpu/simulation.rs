@@ -10,7 +10,7 @@ use downpour_drop::distribution::DropSizeDistribution;
 use downpour_gpu::timing::PassTime;
 use downpour_gpu::{BufferPool, BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
 use downpour_shaders::sim::enter::ENTER_KERNEL;
-use downpour_shaders::sim::step::{STEP_GONE, STEP_KERNEL, STEP_KIND};
+use downpour_shaders::sim::step::{STEP_COUNTERS, STEP_COUNTS, STEP_GONE, STEP_KERNEL, STEP_KIND};
 use downpour_wind::UniformWindAt;
 use downpour_wind::field::WindFieldGrid;
 use glam::{DVec3, Vec3};
@@ -21,7 +21,9 @@ use crate::collision::CollisionMap;
 use crate::enter::EnterRegion;
 use crate::field::VisibleDrops;
 use crate::fill::fill;
+use crate::impacts::SplashOptions;
 use crate::plan::{AirAtEye, Plan, Turn, lags};
+use crate::recent::SPANS;
 use crate::resolved::Resolved;
 use crate::simulation::{Simulation, SimulationOptions, StepEvents, StepInput};
 use crate::step::{StepCaught, StepDrop, StepEvent, StepFrame, StepWorld};
@@ -136,6 +138,7 @@ pub(super) struct StepBuffers<'a> {
     pub(super) pieces: Vec<StepPiece<'a>>,
     pub(super) tables: &'a wgpu::Buffer,
     pub(super) counts: &'a wgpu::Buffer,
+    pub(super) events: &'a wgpu::Buffer,
     /// Placeholders of unused bindings.
     pub(super) nothing: &'a wgpu::Buffer,
     pub(super) nowhere: &'a wgpu::Buffer,
@@ -167,20 +170,31 @@ impl GpuSimulation {
     /// # Errors
     /// [`GpuError`] if the device's memory or limits are too small.
     pub fn from_cpu(gpu: &Gpu, simulation: &Simulation) -> Result<Self, GpuError> {
-        let Simulation { mut plan, speeds, drops, .. } = simulation.clone();
+        let Simulation { mut plan, speeds, drops, kept, .. } = simulation.clone();
         let max_events = plan.options.max_events.min(MAX_EVENTS);
         plan.options.max_events = max_events;
         let mut tables: Vec<u32> = speeds.iter().map(|speed| speed.to_bits()).collect();
         tables.extend(plan.sizes().as_flattened().iter().map(|size| size.to_bits()));
         let regions = plan.bins.len() * REGIONS_PER_BIN + 1;
         tables.resize(tables.len() + regions * size_of::<EnterRegion>() / size_of::<u32>(), 0);
-        let event_bytes = u64::from(max_events.max(1)) * size_of::<StepEvent>() as u64;
+        let max_kept = plan.options.max_kept;
+        let places = u64::from(max_events) + SPANS as u64 * u64::from(max_kept);
+        let event_bytes = places.max(1) * size_of::<StepEvent>() as u64;
+        let events = gpu.empty_buffer("impacts", event_bytes, wgpu::BufferUsages::STORAGE)?;
+        let mut counts = [0; COUNTERS];
+        for (number, impacts) in (0..).zip(&kept) {
+            counts[COUNTS + number] = impacts.len() as u32;
+            let held = &impacts[..impacts.len().min(max_kept as usize)];
+            let first = max_events as usize + number * max_kept as usize;
+            let offset = (first * size_of::<StepEvent>()) as u64;
+            gpu.queue().write_buffer(&events, offset, bytemuck::cast_slice(held));
+        }
         Ok(Self {
             pieces: pieces(gpu, &plan, &drops)?,
             tables: gpu.storage_buffer("tables of the rain", &tables)?,
             speeds,
-            events: gpu.empty_buffer("impacts", event_bytes, wgpu::BufferUsages::STORAGE)?,
-            counts: gpu.storage_buffer("counts of a step", &[0u32; COUNTS])?,
+            events,
+            counts: gpu.storage_buffer("counts of a step", &counts)?,
             nothing: gpu.storage_buffer("nothing", &[0u32; 64])?,
             nowhere: gpu.uniform_buffer("nowhere", &[0u32; 64])?,
             kernels: [const { None }; 4],
@@ -306,6 +320,10 @@ impl GpuSimulation {
             let first = u64::from(turn.frame.regions_first) * size_of::<u32>() as u64;
             self.pool.write_at(&self.tables, first, bytemuck::cast_slice(&turn.regions));
         }
+        if turn.begins_span {
+            let counter = (COUNTS + turn.frame.kept_span as usize) * size_of::<u32>();
+            self.pool.write_at(&self.counts, counter as u64, bytemuck::bytes_of(&0u32));
+        }
         let groups = |count: u32| {
             let groups = count.div_ceil(GROUP);
             [groups.min(GROUPS), groups.div_ceil(GROUPS), 1]
@@ -340,7 +358,7 @@ impl GpuSimulation {
     /// [`GpuError`].
     pub fn events(&self) -> Result<StepEvents, GpuSimError> {
         let counts = self.gpu.read::<u32>(&self.counts)?;
-        let &[events, drops, low, high, lost] = &counts[..] else { return Ok(StepEvents::default()) };
+        let &[events, drops, low, high, lost, ..] = &counts[..] else { return Ok(StepEvents::default()) };
         let recorded = events.min(self.plan.options.max_events);
         let mut list = if recorded > 0 { self.gpu.read::<StepEvent>(&self.events)? } else { Vec::new() };
         list.truncate(recorded as usize);
@@ -388,7 +406,7 @@ impl GpuSimulation {
     /// # Errors
     /// [`GpuError`].
     pub fn visible(&self, view: &View) -> Result<VisibleDrops, GpuSimError> {
-        self.visible_after(0.0, view, None)
+        self.visible_after(0.0, view, None, None)
     }
 
     /// Drops that a picture can show some time after the state, s, as [`Simulation::visible_after`].
@@ -400,9 +418,20 @@ impl GpuSimulation {
         after_s: f64,
         view: &View,
         map: Option<&CollisionMap>,
+        splashes: Option<&SplashOptions>,
     ) -> Result<VisibleDrops, GpuSimError> {
-        let listing = Listing { plan: &self.plan, speeds: &self.speeds, view, after_s, map };
-        Ok(listed(&listing, &self.drops()?))
+        let listing = Listing { plan: &self.plan, speeds: &self.speeds, view, after_s, map, splashes };
+        let kept = if splashes.is_some() { self.kept()? } else { Vec::new() };
+        Ok(listed(&listing, &self.drops()?, &kept))
+    }
+
+    /// Impacts that may show splashes, by the spans of the plan.
+    fn kept(&self) -> Result<Vec<Vec<StepEvent>>, GpuSimError> {
+        let (events, room) = (self.gpu.read::<StepEvent>(&self.events)?, self.plan.options.max_kept as usize);
+        let behind = events.get(self.plan.options.max_events as usize..).unwrap_or_default();
+        let counts = self.gpu.read::<u32>(&self.counts)?;
+        let held = |(span, &count): (&[StepEvent], &u32)| span[..room.min(count as usize)].to_vec();
+        Ok(behind.chunks_exact(room.max(1)).zip(&counts[COUNTS..]).map(held).collect())
     }
 
     /// Makes ready to list the drops that a picture can show some time after the state. Drops that had no room among those of the rain
@@ -419,6 +448,7 @@ impl GpuSimulation {
             pieces: self.pieces.iter().map(Piece::slots).collect(),
             tables: &self.tables,
             counts: &self.counts,
+            events: &self.events,
             nothing: &self.nothing,
             nowhere: &self.nowhere,
         };
@@ -455,7 +485,10 @@ impl GpuSimulation {
 
 /// Number of counters of a step: events; drops through the gauge; their volume, low and high word; drops without a
 /// slot.
-const COUNTS: usize = 5;
+const COUNTS: usize = STEP_COUNTS as usize;
+
+/// Those, and the numbers of the impacts that each span keeps.
+const COUNTERS: usize = STEP_COUNTERS as usize;
 
 /// Creates the pieces of drops on the device; those of a view have free slots.
 fn pieces(gpu: &Gpu, plan: &Plan, drops: &[StepDrop]) -> Result<Vec<Piece>, GpuError> {

@@ -3,15 +3,20 @@
 
 use std::sync::OnceLock;
 
+use bytemuck::Zeroable as _;
 use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, wgpu, workgroups_for};
-use downpour_shaders::sim::step_list::{STEP_LIST_CLEAR_KERNEL, STEP_LIST_KERNEL};
+use downpour_shaders::sim::step_list::{STEP_LIST_CLEAR_KERNEL, STEP_LIST_KERNEL, STEP_SPLASH_KERNEL};
 
 use super::list::{BoundKernel, made_once};
 use super::simulation::StepBuffers;
 use super::{CollisionMapOnGpu, DropListOnGpu, GpuSimError};
 use crate::field::EyeDrop;
+use crate::impacts::SplashOptions;
+use crate::impacts::splash_frame::SplashFrame;
 use crate::plan::Plan;
+use crate::recent::SPANS;
 use crate::step_list::StepListFrame;
+use crate::step_splash::StepSplashFrame;
 use crate::view::View;
 
 /// A picture of stepped rain.
@@ -27,6 +32,8 @@ pub struct StepPicture<'a> {
     pub pane: Option<[f32; 4]>,
     /// Drops that are known already, at the beginning of the list, such as those that drip.
     pub known: &'a [EyeDrop],
+    /// Splashes whose crowns are listed as well; `None`: there are none.
+    pub splashes: Option<&'a SplashOptions>,
     /// Drops that may have room.
     pub max_room: u32,
 }
@@ -37,13 +44,15 @@ pub(super) struct StepListKernels {
     clear: OnceLock<ComputeKernel>,
     /// Without and with a collision map.
     list: [OnceLock<ComputeKernel>; 2],
+    splash: OnceLock<ComputeKernel>,
 }
 
 /// The list of a picture's drops, ready to be made.
 #[derive(Debug)]
 pub struct StepListPass<'a> {
     clear: BoundKernel<'a>,
-    pieces: Vec<BoundKernel<'a>>,
+    /// The drops of each piece, and the crowns of earlier impacts.
+    finders: Vec<BoundKernel<'a>>,
     list: DropListOnGpu,
 }
 
@@ -76,20 +85,41 @@ impl StepListKernels {
             picture.map.map_or((state.nowhere, state.nothing), |map| (map.frame(), map.texels()));
         let listed = (12, list.drops());
         let counted = (13, list.counts());
-        let mut pieces = Vec::new();
+        let splash = SplashFrame {
+            pane: picture.pane.unwrap_or_default(),
+            ..SplashFrame::of_picture(picture.splashes, picture.view)
+        };
+        let splash = buffers.uniform("splash frame", &splash)?;
+        let mut finders = Vec::new();
         for piece in &state.pieces {
             let frame = StepListFrame { count: piece.count, first: piece.first, ..frame };
             let frame = buffers.uniform("step list frame", &frame)?;
             let of_state = [(1, piece.positions), (2, piece.motions), (3, state.tables)];
-            let others = [(8, map), (9, texels), (11, &frame), listed, counted];
+            let others = [(0, &splash), (8, map), (9, texels), (11, &frame), listed, counted];
             let bindings = kernel.bind_at(buffers, of_state.into_iter().chain(others))?;
             let groups = workgroups_for(piece.count);
-            pieces.push((kernel, bindings, groups));
+            finders.push((kernel, bindings, groups));
+        }
+        let max_kept = plan.options.max_kept;
+        if picture.splashes.is_some() && max_kept > 0 {
+            let kernel = made_once(&self.splash, || ComputeKernel::new(gpu, &STEP_SPLASH_KERNEL, &[]))?;
+            let frame_of_splashes = StepSplashFrame {
+                spans: plan.recent.before(picture.after_s, picture.view.eye),
+                first: plan.options.max_events,
+                room: max_kept,
+                ..StepSplashFrame::zeroed()
+            };
+            let frame_of_list = buffers.uniform("step list frame", &frame)?;
+            let of_splashes = buffers.uniform("step splash frame", &frame_of_splashes)?;
+            let bound = [(0, &splash), (5, state.events), (6, state.counts), (11, &frame_of_list)];
+            let rest = [listed, counted, (14, &of_splashes)];
+            let bindings = kernel.bind_at(buffers, bound.into_iter().chain(rest))?;
+            finders.push((kernel, bindings, workgroups_for(SPANS as u32 * max_kept)));
         }
         let kernel = made_once(&self.clear, || ComputeKernel::new(gpu, &STEP_LIST_CLEAR_KERNEL, &[]))?;
         let frame = buffers.uniform("step list frame", &frame)?;
         let bindings = kernel.bind_at(buffers, [(6, state.counts), (11, &frame), listed, counted])?;
-        Ok(StepListPass { clear: (kernel, bindings, workgroups_for(room)), pieces, list })
+        Ok(StepListPass { clear: (kernel, bindings, workgroups_for(room)), finders, list })
     }
 }
 
@@ -108,8 +138,9 @@ impl StepListPass<'_> {
     #[must_use]
     pub fn stages(&self) -> [Vec<Dispatch<'_>>; 2] {
         let (kernel, bindings, groups) = &self.clear;
-        let pieces = self.pieces.iter().map(|(kernel, bindings, groups)| kernel.dispatch(bindings, *groups));
-        [vec![kernel.dispatch(bindings, *groups)], pieces.collect()]
+        let finders =
+            self.finders.iter().map(|(kernel, bindings, groups)| kernel.dispatch(bindings, *groups));
+        [vec![kernel.dispatch(bindings, *groups)], finders.collect()]
     }
 
     /// The same with another dispatch beside those that list the drops.

@@ -15,12 +15,12 @@ use glam::{DVec3, Vec3};
 use super::bounced::{Travels, leaving_speed, slip_bends, slip_lasts};
 use crate::drift::Drift;
 use crate::falling::EyeDrop;
-use crate::field::frame::{FieldQuery, field_normals};
+use crate::field::frame::FieldQuery;
 use crate::field::{Class, ROOM, RainField, Reach, SPARE_ROOM};
 use crate::options::Bounce;
 use crate::resolved::Resolved;
 use crate::shelter::Obstacles;
-use crate::view::{Bounds, View};
+use crate::view::{Bounds, View, side_rows};
 
 /// Uniforms of the search for droplets.
 #[repr(C)]
@@ -253,7 +253,7 @@ impl Bounce {
         let (model, air) = &field.falls;
         let parts = expected.min(MAX_PARTS) as u32;
         let frame = BounceFrame {
-            sides: field_normals(view.sides()),
+            sides: side_rows(view.sides()),
             air: FallSpeedAir::new(air),
             eye: (view.eye - origin).as_vec3(),
             half_shutter: (0.5 * view.shutter_s) as f32,

@@ -150,10 +150,11 @@ impl OnGpu {
         };
         let (field, splashes, bounce) = match &shown.rain {
             ShowerRain::Closed { field, splashes, bounce, .. } => (field, splashes, bounce),
-            ShowerRain::Stepped(picture) => {
+            ShowerRain::Stepped { picture, splashes } => {
                 return Ok(picture.with(|simulation, after_s, map| {
                     let view = &shown.view;
-                    let picture = StepPicture { view, after_s, map, pane, known: &known, max_room };
+                    let splashes = splashes.as_ref();
+                    let picture = StepPicture { view, after_s, map, pane, known: &known, splashes, max_room };
                     draw(PictureDrops::Stepped(simulation, picture))
                 })?);
             }

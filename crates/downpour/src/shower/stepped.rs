@@ -17,6 +17,7 @@ use downpour_drop::distribution::DropSizeDistribution;
 use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_sim::collision::{CollisionMap, CollisionOptions};
 use downpour_sim::field::VisibleDrops;
+use downpour_sim::impacts::SplashOptions;
 use downpour_sim::simulation::{Drag, SimVolume, Simulation, SimulationOptions, StepInput, least_pixels};
 use downpour_sim::view::View;
 use downpour_weather::{RAIN_BOX_M, RainDrag, RainVolume, Weather};
@@ -47,6 +48,9 @@ const REMEMBERED: i64 = 3600;
 
 /// The number of the step at time 0: those before it have numbers too.
 const STEP_ZERO: i64 = 1 << 30;
+
+/// Impacts of a step that may show splashes, at most: there is room for so many on a device.
+const MAX_SPLASHES: u32 = 1 << 15;
 
 /// Times, s, for which drops may be in view.
 const OLDEST_S: [f64; 2] = [2.0, 32.0];
@@ -145,11 +149,12 @@ impl StepDrops {
         after_s: f64,
         view: &View,
         map: Option<&CollisionMap>,
+        splashes: Option<&SplashOptions>,
     ) -> Result<VisibleDrops, ShowerError> {
         match self {
-            Self::Cpu(simulation) => Ok(simulation.visible_after(after_s, view, map)),
+            Self::Cpu(simulation) => Ok(simulation.visible_after(after_s, view, map, splashes)),
             #[cfg(feature = "wgpu")]
-            Self::Device(on) => on.visible_after(after_s, view, map),
+            Self::Device(on) => on.visible_after(after_s, view, map, splashes),
         }
     }
 
@@ -220,8 +225,9 @@ impl Stepped {
                 _ => Drag::Relaxation,
             },
             bounce: bounce(rain),
-            // Nothing takes them up yet.
+            // Only splashes take them up.
             max_events: 0,
+            max_kept: if weather.splashes.is_enabled { MAX_SPLASHES } else { 0 },
             ..SimulationOptions::default()
         };
         let speeds = TerminalSpeed::new(law.options().fall_speed, &law.options().air);
@@ -249,12 +255,13 @@ impl Stepped {
         scenery: &dyn Scenery,
         frame_scene: &FrameScene,
         time_s: f64,
+        splashes: Option<&SplashOptions>,
         passed: &mut dyn FnMut(u32, u32),
     ) -> Result<VisibleDrops, ShowerError> {
         let (running, view, after_s) = self.run(None, scenery, frame_scene, time_s, passed)?;
         let now = self.map_now(scenery, frame_scene, &view, &running.step_scenery, time_s)?;
         let map = now.as_ref().or(running.step_scenery.map.as_deref());
-        let visible = running.drops.visible_after(after_s, &view, map)?;
+        let visible = running.drops.visible_after(after_s, &view, map, splashes)?;
         self.running = Some(running);
         Ok(visible)
     }

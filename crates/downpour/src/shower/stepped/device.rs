@@ -6,6 +6,7 @@ use downpour_gpu::Gpu;
 use downpour_sim::collision::CollisionMap;
 use downpour_sim::field::VisibleDrops;
 use downpour_sim::gpu::{CollisionMapOnGpu, GpuSimulation, GpuStepInput};
+use downpour_sim::impacts::SplashOptions;
 use downpour_sim::resolved::Resolved;
 use downpour_sim::simulation::Simulation;
 use downpour_sim::view::View;
@@ -110,8 +111,9 @@ impl SteppedOnGpu {
         after_s: f64,
         view: &View,
         map: Option<&CollisionMap>,
+        splashes: Option<&SplashOptions>,
     ) -> Result<VisibleDrops, ShowerError> {
-        Ok(self.lock().simulation.visible_after(after_s, view, map)?)
+        Ok(self.lock().simulation.visible_after(after_s, view, map, splashes)?)
     }
 
     /// Rate, mm/h, of the drops in the volume.
