@@ -65,7 +65,7 @@ mod renderer;
 pub mod shower;
 
 #[cfg(feature = "wgpu")]
-pub use rain::{PlateTextures, Rain, RainError, RainSettings, RainView};
+pub use rain::{ObstacleMesh, PlateTextures, Rain, RainError, RainSettings, RainView};
 pub use renderer::{
     Backend, Computer, Device, DisplayFrame, Frame, PendingDisplay, PendingFrame, PixelDrop, Progress,
     Renderer, RendererError, RendererOptions, Source, Truth,

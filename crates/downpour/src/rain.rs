@@ -1,6 +1,7 @@
 //! Rain in the frames of a host application: on its device, over its color texture, in its command encoder.
 
 mod error;
+mod obstacles;
 mod settings;
 mod textures;
 
@@ -16,24 +17,24 @@ use downpour_render::rain::{
     DropMasks, Exposure, MediumGrain, MediumOptions, Rain as PictureRain, RainMedium, RainOptions,
 };
 use downpour_sim::field::{RainField, VisibleDrops};
-use downpour_sim::gpu::{FieldOnGpu, FieldPipeline, FieldSearch, ObstaclesOnGpu};
+use downpour_sim::gpu::{FieldOnGpu, FieldPipeline, FieldSearch, HolesOnGpu, ObstaclesOnGpu};
 use downpour_sim::impacts::SplashOptions;
 use downpour_sim::resolved::Resolved;
 use downpour_sim::shelter::Obstacles;
 use downpour_sim::simulation::Bounce;
 use downpour_sim::view::View;
-use downpour_trace::builder::{MeshPart, SceneBuilder};
 use downpour_trace::data::{RenderFrame, SceneData};
-use downpour_trace::frame_scene::{MAX_LIGHTS, MAX_TRIANGLES, view_of};
+use downpour_trace::frame_scene::{MAX_LIGHTS, view_of};
 use downpour_trace::gpu::SceneOnGpu;
 use downpour_trace::scene::SceneView;
-use downpour_trace::sky_light::SkyLight;
-use glam::{Affine3A, DVec3, Vec3};
+use glam::{DVec3, Vec3};
 
 use crate::shower::{drops_among, fall_speed, splashes};
+use obstacles::scene_of;
 
 pub use downpour_render::host::DepthRange;
 pub use error::RainError;
+pub use obstacles::{AlphaHoles, ObstacleMesh};
 pub use settings::RainSettings;
 pub use textures::{HostSky, PlateTextures};
 
@@ -104,6 +105,8 @@ pub struct Rain {
     /// Splashes, if drops splash.
     splashes: Option<SplashOptions>,
     has_obstacles: bool,
+    /// True if some obstacles have holes.
+    has_holes: bool,
     /// Obstacles and lamps.
     scene: SceneData,
     scene_on_gpu: SceneOnGpu,
@@ -149,6 +152,7 @@ impl Rain {
             masks,
             splashes,
             has_obstacles: false,
+            has_holes: false,
             scene,
             rains,
         })
@@ -182,11 +186,23 @@ impl Rain {
     /// Without any, rain falls everywhere that the depth texture does not hide.
     ///
     /// # Errors
-    /// [`RainError::TooMany`] above [`MAX_TRIANGLES`], or what the GPU says; the old triangles stay.
+    /// As [`Rain::set_obstacle_meshes`].
     pub fn set_obstacles(&mut self, triangles: &[[[f32; 3]; 3]]) -> Result<(), RainError> {
-        let scene = scene_of(triangles)?;
+        self.set_obstacle_meshes(&[ObstacleMesh::solid(triangles)])
+    }
+
+    /// Sets the meshes that stop rain and light, in place of the obstacles that were set. Drops and light go through their holes, and
+    /// drops splash on what is between.
+    ///
+    /// # Errors
+    /// [`RainError::TooMany`] above [`MAX_TRIANGLES`](downpour_trace::frame_scene::MAX_TRIANGLES) in all, [`RainError::Texture`] for
+    /// an alpha texture that does not fit, [`RainError::OutOfRange`] for its cutoff, or what the GPU says; the old obstacles stay.
+    pub fn set_obstacle_meshes(&mut self, meshes: &[ObstacleMesh<'_>]) -> Result<(), RainError> {
+        let scene = scene_of(meshes)?;
         self.scene_on_gpu = SceneOnGpu::new(&self.gpu, &scene)?;
-        (self.scene, self.has_obstacles) = (scene, !triangles.is_empty());
+        self.has_obstacles = !scene.triangles.is_empty();
+        self.has_holes = self.has_obstacles && meshes.iter().any(|mesh| mesh.holes.is_some());
+        self.scene = scene;
         Ok(())
     }
 
@@ -206,7 +222,7 @@ impl Rain {
         Obstacles {
             nodes: &self.scene.nodes,
             triangles: &self.scene.triangles,
-            holes: None,
+            holes: if self.has_holes { Some(&self.scene) } else { None },
             origin: DVec3::ZERO,
         }
     }
@@ -246,12 +262,14 @@ impl Rain {
         self.set_lights(textures.lights)?;
         let eye = view.camera.eye.as_dvec3();
         self.pool.begin_frame();
-        let [nodes, triangles] = self.scene_on_gpu.obstacles();
+        let frame = RenderFrame::new(&self.scene, &view.camera, size, 1, 0, 0)?;
+        let lighting_on_gpu = self.scene_on_gpu.lighting_of(&self.pool, &frame, &self.scene)?;
+        let [_, nodes, triangles, corners, table, texels] = &lighting_on_gpu.buffers;
         let bounds = self.scene.nodes.first().filter(|_| self.has_obstacles);
         let obstacles = ObstaclesOnGpu {
             nodes,
             triangles,
-            holes: None,
+            holes: self.has_holes.then_some(HolesOnGpu { corners, table, texels }),
             bounds: bounds.map(|root| [Vec3::from(root.low), Vec3::from(root.high)]),
             origin: DVec3::ZERO,
         };
@@ -272,12 +290,10 @@ impl Rain {
         self.medium = Some((*found.resolved(), medium));
         let options = self.options(view, medium);
         let rain = PictureRain::new(&camera, eye, &[], &self.masks, &options);
-        let frame = RenderFrame::new(&self.scene, &view.camera, size, 1, 0, 0)?;
         let lighting = SceneView { data: &self.scene, frame: &frame };
         let lights = [rain.lights(&lighting, &self.masks)?, rain.streak_lights(&lighting, &self.masks)?];
 
         let pool = &self.pool;
-        let lighting = self.scene_on_gpu.lighting_of(pool, &frame, &self.scene)?;
         let environment = self.rains.environment(pool, &rain)?;
         let plate_frame = HostPlateFrame {
             camera,
@@ -289,7 +305,8 @@ impl Rain {
         let environment_frame = HostEnvironmentFrame::new(&camera, rain.environment.size, sky_scale);
         let made =
             self.host.prepare(pool, &textures.on_gpu(), &plate_frame, &environment_frame, &environment)?;
-        let plate = PlateOnGpu { pixels: made.pixels(), environment: &environment, lighting: &lighting };
+        let plate =
+            PlateOnGpu { pixels: made.pixels(), environment: &environment, lighting: &lighting_on_gpu };
         let falling = FallingOnGpu {
             drops: found.list().drops(),
             count: found.list().places(),
@@ -387,18 +404,4 @@ impl Falling {
         let field = RainField::new(&sizes, settings.seed)?.with_wind(settings.uniform_wind()?);
         Ok(Self { sizes, field, splashes: splashes(&settings.splashes, &settings.air)? })
     }
-}
-
-/// A scene of obstacles alone.
-fn scene_of(triangles: &[[[f32; 3]; 3]]) -> Result<SceneData, RainError> {
-    let found = triangles.len() as u64;
-    if found > MAX_TRIANGLES {
-        return Err(RainError::TooMany { quantity: "triangles", found, allowed: MAX_TRIANGLES });
-    }
-    let positions: Vec<[f32; 3]> = triangles.iter().flatten().copied().collect();
-    let indices: Vec<u32> = (0..positions.len() as u32).collect();
-    let part = MeshPart::plain(&positions, &indices, 0);
-    let mut builder = SceneBuilder::new();
-    builder.add_mesh(&part, &Affine3A::IDENTITY);
-    Ok(builder.build(&SkyLight::uniform([0.0; 3])))
 }

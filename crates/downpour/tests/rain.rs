@@ -6,9 +6,12 @@ mod device;
 
 use downpour::gpu::{Gpu, LimitSet, wgpu};
 use downpour::math::packing::packing_unpack_half;
-use downpour::rain::{DepthRange, PlateTextures, Rain, RainError, RainSettings, RainView};
+use downpour::rain::{
+    AlphaHoles, DepthRange, ObstacleMesh, PlateTextures, Rain, RainError, RainSettings, RainView,
+};
 use downpour::render::camera::{EyeMotion, Viewpoint};
 use downpour::render::light::LightSource;
+use downpour::trace::data::SceneData;
 use glam::Vec3;
 
 const SIZE: [u32; 2] = [160, 90];
@@ -193,14 +196,25 @@ fn mean(pixels: &[[f32; 4]]) -> f32 {
 
 /// The same passes on the CPU, from colors, depths and obstacles that the test knows.
 fn expected(rain: &Rain, view: &RainView, wall_m: f32, obstacles: &[[[f32; 3]; 3]]) -> Vec<[f32; 4]> {
+    use downpour::trace::builder::{MeshPart, SceneBuilder};
+    use downpour::trace::sky_light::SkyLight;
+
+    let mut builder = SceneBuilder::new();
+    let corners: Vec<[f32; 3]> = obstacles.iter().flatten().copied().collect();
+    let indices: Vec<u32> = (0..corners.len() as u32).collect();
+    builder.add_mesh(&MeshPart::plain(&corners, &indices, 0), &glam::Affine3A::IDENTITY);
+    expected_among(rain, view, wall_m, &builder.build(&SkyLight::uniform([0.0; 3])))
+}
+
+/// The same among the obstacles of a scene.
+fn expected_among(rain: &Rain, view: &RainView, wall_m: f32, scene: &SceneData) -> Vec<[f32; 4]> {
     use downpour::drop::oscillation::{Amplitudes, Fluids};
     use downpour::render::host::{HostEnvironment, HostEnvironmentFrame, HostPlateFrame, host_plate};
     use downpour::render::picture::compose_pixel;
     use downpour::render::rain::{DropMasks, EnvironmentMap, Exposure, MediumOptions, Rain as PictureRain};
     use downpour::render::rain::{RainMedium, RainOptions};
     use downpour::render::{Plate, rain_layer};
-    use downpour::trace::builder::{MeshPart, SceneBuilder};
-    use downpour::trace::{data::RenderFrame, scene::SceneView, sky_light::SkyLight};
+    use downpour::trace::{data::RenderFrame, scene::SceneView};
 
     let settings = rain.settings();
     let index = downpour::drop::optics::water_index_in_air(589.3e-9, &settings.air).expect("it is possible");
@@ -236,13 +250,8 @@ fn expected(rain: &Rain, view: &RainView, wall_m: f32, obstacles: &[[[f32; 3]; 3
     let map = HostEnvironmentFrame::new(&camera, picture.environment.size, None);
     let finest = HostEnvironment { frame: &map, plate: &pixels, sky: ([1, 1], &[[0.0; 4]]) }.map();
     let environment = EnvironmentMap::new(&picture.environment, finest);
-    let mut builder = SceneBuilder::new();
-    let corners: Vec<[f32; 3]> = obstacles.iter().flatten().copied().collect();
-    let indices: Vec<u32> = (0..corners.len() as u32).collect();
-    builder.add_mesh(&MeshPart::plain(&corners, &indices, 0), &glam::Affine3A::IDENTITY);
-    let scene = builder.build(&SkyLight::uniform([0.0; 3]));
-    let of_scene = RenderFrame::new(&scene, &view.camera, SIZE, 1, 0, 0).expect("it is possible");
-    let lighting = SceneView { data: &scene, frame: &of_scene };
+    let of_scene = RenderFrame::new(scene, &view.camera, SIZE, 1, 0, 0).expect("it is possible");
+    let lighting = SceneView { data: scene, frame: &of_scene };
     let clean = &pixels[..(SIZE[0] * SIZE[1]) as usize];
     let plate = Plate { camera: &camera, pixels: clean, environment: &environment, lighting: &lighting };
     let layer = rain_layer(&plate, &picture, &masks, &mut Vec::new()).expect("it is possible");
@@ -350,6 +359,79 @@ fn depth_hides_rain_and_a_roof_stops_it() {
     rain.set_settings(RainSettings { rate_mm_h: 0.0, ..settings() }).unwrap();
     let dry = host.rain(&mut rain, &view(), 20.0, &[]).unwrap();
     assert_eq!(changed(&dry), 0);
+}
+
+/// Drops and light go through the holes of a canopy, drops splash on what is between, and the device agrees with the CPU.
+#[test]
+fn drops_fall_through_the_holes_of_obstacles() {
+    use downpour::shaders::render::scene::SCENE_MASKED;
+    use downpour::sim::field::DropKind;
+    use downpour::trace::builder::{MeshPart, SceneBuilder};
+    use downpour::trace::material::{MaterialLook, TextureUse};
+    use downpour::trace::sky_light::SkyLight;
+
+    let Some(gpu) = device() else { return };
+    let mut rain = Rain::new(gpu.device(), gpu.queue(), settings()).unwrap();
+    let host = Host::new(&gpu, SIZE, wgpu::TextureFormat::Rgba16Float);
+    // Stripes along z of half a meter each, of which every other is a hole; below them the ground.
+    let corners = [[-40.0, 0.6, -40.0], [-40.0, 0.6, 40.0], [40.0, 0.6, 40.0], [40.0, 0.6, -40.0]];
+    let coordinates = [[0.0, 0.0], [0.0, 1.0], [80.0, 1.0], [80.0, 0.0]];
+    fn two<T: Copy>([a, b, c, d]: [T; 4]) -> [[T; 3]; 2] {
+        [[a, b, c], [a, c, d]]
+    }
+    let (canopy, uvs, alpha) = (two(corners), two(coordinates), [255, 255, 255, 255, 0, 0, 0, 0]);
+    let holes = AlphaHoles { uvs: &uvs, size: [8, 1], alpha: &alpha, cutoff: 0.5 };
+    let ground = ground();
+    let meshes = [ObstacleMesh::solid(&ground), ObstacleMesh { triangles: &canopy, holes: Some(holes) }];
+    rain.set_obstacle_meshes(&meshes).unwrap();
+    let eye = Vec3::new(0.5, 0.25, -2.0);
+    let view = RainView { camera: Viewpoint { eye, ..view().camera }, ..view() };
+    let drops = rain.drops(&view, SIZE).unwrap().drops;
+    // No wind: what is below the canopy has fallen straight through. Midway between texels it is either.
+    let is_below_hole = |x: f64| (0.5 - 1.0e-3..1.0 + 1.0e-3).contains(&((x + 40.0).rem_euclid(1.0)));
+    let below: Vec<_> = drops
+        .iter()
+        .filter(|drop| drop.position.y < 0.55 && matches!(drop.kind, DropKind::Falling | DropKind::Splash))
+        .collect();
+    assert!(below.len() > 50 && below.iter().all(|drop| is_below_hole(drop.position.x)), "{}", below.len());
+    let (made, wall_m) = (host.rain(&mut rain, &view, 6.0, &[]).unwrap(), 6.0);
+    let mut builder = SceneBuilder::new();
+    let texels: Vec<[u8; 4]> = alpha.iter().map(|&alpha| [255, 255, 255, alpha]).collect();
+    let slot = builder.texture(8, 1, &texels, TextureUse::Data);
+    let slot = builder.add_slot(slot);
+    let whole = builder.add_material(MaterialLook::default());
+    let maps = [Some(slot), None, None, None, None, None];
+    let cut = builder.add_material(MaterialLook { flags: SCENE_MASKED, maps, ..MaterialLook::default() });
+    let order = [0, 1, 2, 0, 2, 3];
+    let [a, b, c, d] = [ground[0][0], ground[0][1], ground[0][2], ground[1][2]];
+    builder.add_mesh(&MeshPart::plain(&[a, b, c, d], &order, whole), &glam::Affine3A::IDENTITY);
+    let part = MeshPart { uvs: [Some(&coordinates), None], ..MeshPart::plain(&corners, &order, cut) };
+    builder.add_mesh(&part, &glam::Affine3A::IDENTITY);
+    let expected = expected_among(&rain, &view, wall_m, &builder.build(&SkyLight::uniform([0.0; 3])));
+    let differ = |a: &[[f32; 4]], b: &[[f32; 4]]| {
+        a.iter().zip(b).filter(|(a, b)| (0..3).any(|k| (a[k] - b[k]).abs() > 4.0e-3)).count()
+    };
+    let off = differ(&made, &expected);
+    assert!(off < made.len() / 200, "{off} of {} pixels differ", made.len());
+    // The controls: no holes, and no canopy.
+    for other in [&[ObstacleMesh::solid(&ground), ObstacleMesh::solid(&canopy)][..], &meshes[..1]] {
+        rain.set_obstacle_meshes(other).unwrap();
+        let without = host.rain(&mut rain, &view, wall_m, &[]).unwrap();
+        assert!(differ(&without, &expected) > 5 * off.max(20), "{}", differ(&without, &expected));
+    }
+    for (holes, text) in [
+        (AlphaHoles { size: [8, 0], ..holes }, "has 8 x 0 texels; allowed: 1 to 8192 each"),
+        (AlphaHoles { size: [4, 1], ..holes }, "has 8 values; allowed: 4, for 4 x 1 texels"),
+        (
+            AlphaHoles { uvs: &uvs[..1], ..holes },
+            "has coordinates of 1 triangles; allowed: those of the 2 triangles",
+        ),
+        (AlphaHoles { cutoff: f32::NAN, ..holes }, "alpha cutoff of obstacles is NaN; allowed: 0 to 1"),
+    ] {
+        let mesh = ObstacleMesh { triangles: &canopy, holes: Some(holes) };
+        let error = rain.set_obstacle_meshes(&[mesh]).unwrap_err().to_string();
+        assert!(error.contains(text), "{error}");
+    }
 }
 
 /// Level ground that reaches far.
