@@ -103,7 +103,7 @@ fn hosts() -> Vec<Host> {
         host!(HostBlendFrame as "HostBlendFrame" in &render::host::HOST_BLEND, width, scale, unused),
         host!(DropsFrame as "DropsFrame" in &render::rain::DROPS_FRAME,
             camera, capture_right, capture_size, capture_up, capture_last,
-            capture_forward, capture_texel, form, mask_size, unused, light_terms, streak_samples,
+            capture_forward, capture_texel, form, mask_size, known, light_terms, streak_samples,
             streak_color, glints, atlas),
         host!(EyeDrop as "EyeDrop" in &sim::field::EYE_DROP,
             offset, diameter, velocity, id, present, speed, id_low),

@@ -75,7 +75,7 @@ fn refined_frame(frame: &RenderFrame, count: u32) -> RenderFrame {
 }
 
 /// The frame without what differs between the frames that refine a plate.
-fn seedless(frame: &RenderFrame) -> RenderFrame {
+pub(crate) fn seedless(frame: &RenderFrame) -> RenderFrame {
     RenderFrame { camera: Camera { seed: 0, ..frame.camera }, ..*frame }.with_ray_spacing(1)
 }
 

@@ -317,7 +317,7 @@ impl Rain {
         let mut stages = vec![[made.dispatches(), pass.environment()].concat()];
         stages.extend(found.stages_beside(pass.open_air()));
         stages.extend(pass.binning());
-        stages.push([pass.lamps(), pass.streaks(), pass.medium().to_vec(), vec![pass.drops()]].concat());
+        stages.push([pass.lamps(), pass.streaks(), pass.medium(), vec![pass.drops()]].concat());
         for stage in &stages {
             let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: Some("rain"),

@@ -17,7 +17,8 @@ struct DropsFrame {
     form: u32,
     // Texels along an edge of a mask.
     mask_size: u32,
-    unused: u32,
+    // Number under which means of classes stay from picture to picture; 0: each picture finds its own.
+    known: u32,
     // Terms of the formula of Rousseau 2006 for the light of lamps: DROP_LIGHT_EXTERNAL, DROP_LIGHT_INTERNAL, or both.
     light_terms: u32,
     // Samples along the chord of a streak that is averaged by a loop.

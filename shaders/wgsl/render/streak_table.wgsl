@@ -68,18 +68,22 @@ fn main_streak_table(@builtin(workgroup_id) group: vec3u, @builtin(local_invocat
     let line = f32(ray / STREAK_RAYS) / last;
     let towards =
         normalize(camera_ray(drops_frame.camera, column * f32(drops_frame.camera.width), line * f32(drops_frame.camera.height)));
-    var sum = vec4f(0.0);
+    let entry = kind * STREAK_RAYS * STREAK_RAYS + ray;
+    let known = f32(drops_frame.known);
+    let is_known = known > 0.0 && streak_made[entry].w == known;
     // A class without rows is not wanted.
-    let points = select(0u, STREAK_MEAN_POINTS, streak_classes[kind].rows > 0u);
+    let is_wanted = streak_classes[kind].rows > 0u && !is_known;
+    var sum = vec4f(0.0);
+    let points = select(0u, STREAK_MEAN_POINTS, is_wanted);
     for (var point = index; point < points; point += STREAK_MEAN_GROUP) {
         sum += streak_table_point(kind, towards, point);
     }
     streak_table_parts[index] = sum;
     workgroupBarrier();
-    if index == 0u {
+    if index == 0u && !is_known {
         for (var part = 1u; part < STREAK_MEAN_GROUP; part += 1u) {
             sum += streak_table_parts[part];
         }
-        streak_made[kind * STREAK_RAYS * STREAK_RAYS + ray] = vec4f(sum.rgb / max(sum.w, 1.0), 0.0);
+        streak_made[entry] = vec4f(sum.rgb / max(sum.w, 1.0), select(0.0, known, is_wanted));
     }
 }

@@ -342,7 +342,7 @@ fn masks_case(
             Ok(run(STREAK_RAYS, &of_part(&table().entries), &of_part(&pass.streak_table()?)))
         }
         Part::Drops => {
-            let drawn = [pass.lamps(), pass.streaks(), pass.medium().to_vec(), vec![pass.drops()]];
+            let drawn = [pass.lamps(), pass.streaks(), pass.medium(), vec![pass.drops()]];
             gpu.submit(&drawn.concat())?;
             let layer = kept(&format!("{key} layer"), || {
                 let medium = rain.medium_light(lights).layer(clean);

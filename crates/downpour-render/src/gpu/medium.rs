@@ -1,12 +1,13 @@
 //! Unresolved rain on a GPU: what [`MediumLight::layer`] makes on the CPU.
 
+use bytemuck::Zeroable;
 use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu, workgroups};
 use downpour_shaders::render::medium::{
     MEDIUM_CELLS, MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL,
 };
 
 use super::plate::PlateOnGpu;
-use crate::rain::medium::MediumLight;
+use crate::rain::medium::{MediumFrame, MediumLight};
 
 /// The pipelines of unresolved rain: made once, used for any number of pictures.
 #[derive(Clone, Debug)]
@@ -27,6 +28,35 @@ pub struct MediumPass<'a> {
     groups: [u32; 3],
     frame: wgpu::Buffer,
     found: wgpu::Buffer,
+    /// What its light is found from, besides plate and lamps.
+    of: MediumOf,
+    /// True if the light is there already.
+    is_known: bool,
+}
+
+/// What the light of unresolved rain before a plate is found from, besides the plate and its lamps.
+#[derive(Clone, Debug)]
+pub(super) struct MediumOf {
+    medium: MediumFrame,
+    phase: Vec<[f32; 4]>,
+    found: wgpu::Buffer,
+}
+
+impl MediumOf {
+    /// True if another picture of the same plate has the same light, in the same buffer: streaks of unresolved drops, which move, are
+    /// none of it.
+    fn is_same(&self, other: &Self) -> bool {
+        let still = |medium: &MediumFrame| MediumFrame {
+            axis: [0.0; 3],
+            across: [0.0; 3],
+            beside: [0.0; 3],
+            seed: 0,
+            is_grainy: 0,
+            shells: Zeroable::zeroed(),
+            ..*medium
+        };
+        self.found == other.found && self.phase == other.phase && still(&self.medium) == still(&other.medium)
+    }
 }
 
 impl MediumPipeline {
@@ -76,7 +106,9 @@ impl MediumPipeline {
             filter,
             groups: [width.div_ceil(8), height.div_ceil(8), 1],
             frame,
+            of: MediumOf { medium: medium.medium, phase: medium.phase.clone(), found: found.clone() },
             found,
+            is_known: false,
         })
     }
 }
@@ -88,13 +120,22 @@ impl MediumPass<'_> {
         self.pipeline.open.dispatch(&self.open.0, self.open.1)
     }
 
-    /// The dispatches after that, in this order.
+    /// The dispatches after that, in this order: the light, unless it is there already, and its filter.
     #[must_use]
-    pub fn dispatches(&self) -> [Dispatch<'_>; 2] {
-        [
-            self.pipeline.light.dispatch(&self.light, self.groups),
-            self.pipeline.filter.dispatch(&self.filter, self.groups),
-        ]
+    pub fn dispatches(&self) -> Vec<Dispatch<'_>> {
+        let light = self.pipeline.light.dispatch(&self.light, self.groups);
+        let filter = self.pipeline.filter.dispatch(&self.filter, self.groups);
+        if self.is_known { vec![filter] } else { vec![light, filter] }
+    }
+
+    /// Takes the light that the last picture has found, if it is the same; its plate and lamps are.
+    pub(super) fn go_on_from(&mut self, last: &MediumOf) {
+        self.is_known = self.of.is_same(last);
+    }
+
+    /// What its light is found from.
+    pub(super) fn of(&self) -> &MediumOf {
+        &self.of
     }
 
     /// The frame of the medium on the device.

@@ -138,7 +138,9 @@ impl ProjectPipeline {
     ) -> Result<(ProjectPass<'_>, ListOnGpu, StreaksOnGpu), GpuError> {
         let (project, profiles) = frames;
         let storage = wgpu::BufferUsages::STORAGE;
+        // A list without drops has an empty place.
         let room = project.room.max(1);
+        let project = &ProjectFrame { room, ..*project };
         let words = |label, count: u32, size: usize| {
             buffers.buffer(label, u64::from(count.max(1)) * size as u64, storage)
         };

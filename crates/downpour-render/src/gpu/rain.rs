@@ -11,6 +11,7 @@ use downpour_shaders::render::rain::{
 };
 
 use super::drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
+use super::kept_light::KeptLight;
 use super::medium::{MediumPass, MediumPipeline};
 use super::plate::PlateOnGpu;
 use super::project::{FallingOnGpu, JobGroups, ListOnGpu, ProjectPass, ProjectPipeline};
@@ -19,7 +20,7 @@ use crate::rain::light::{DropLightTable, DropLights};
 use crate::rain::profiles::{MAX_ENTRIES, MAX_RAYS, ProfilesFrame};
 use crate::rain::project::ProjectFrame;
 use crate::rain::tiles::TilesFrame;
-use crate::rain::{DropMasks, Rain, RainOptions, ScreenDrop, StreakRay};
+use crate::rain::{DropMasks, DropsFrame, Rain, RainOptions, ScreenDrop, StreakPath, StreakRay};
 
 /// The pipelines of drops: made once, used for any number of pictures.
 #[derive(Clone, Debug)]
@@ -64,6 +65,10 @@ pub struct RainPass<'a> {
     texels: wgpu::Buffer,
     table: wgpu::Buffer,
     layer: wgpu::Buffer,
+    /// The frame of the drops, and where it is.
+    frame: (DropsFrame, wgpu::Buffer),
+    /// Classes with a mean, before it is known which are wanted.
+    classes: Vec<StreakPath>,
 }
 
 impl RainPipeline {
@@ -252,6 +257,8 @@ impl RainPipeline {
             texels,
             table,
             layer,
+            frame: (rain.frame, frame),
+            classes: rain.profiles.classes.clone(),
         })
     }
 }
@@ -344,9 +351,22 @@ impl RainPass<'_> {
         rays.into_iter().chain(light).collect()
     }
 
+    /// Keeps light for the next picture, and takes what is the same of the `last` one. That one has drawn before the same plate with the
+    /// same environment map and the same lamps, with buffers from the same source, and no picture has since; `None`: there is none.
+    pub fn keep_light(&mut self, buffers: &impl BufferSource, last: Option<&KeptLight>) -> KeptLight {
+        let (drops, frame) = &mut self.frame;
+        drops.known = KeptLight::number(last, drops, &self.classes, &self.table);
+        buffers.write(frame, bytemuck::bytes_of(drops));
+        if let Some(last) = last {
+            self.medium.go_on_from(&last.medium);
+        }
+        let (table, medium) = (self.table.clone(), self.medium.of().clone());
+        KeptLight { drops: *drops, classes: self.classes.clone(), table, medium }
+    }
+
     /// The drops that are not drawn one by one, in this order; before [`RainPass::drops`].
     #[must_use]
-    pub fn medium(&self) -> [Dispatch<'_>; 2] {
+    pub fn medium(&self) -> Vec<Dispatch<'_>> {
         self.medium.dispatches()
     }
 

@@ -31,8 +31,8 @@ pub struct DropsFrame {
     pub form: u32,
     /// Texels along an edge of a mask.
     pub mask_size: u32,
-    /// 0.
-    pub unused: u32,
+    /// Number under which means of classes stay from picture to picture; 0: each picture finds its own.
+    pub known: u32,
     /// Terms of the formula of Rousseau 2006 for the light of lamps.
     pub light_terms: u32,
     /// Samples along the chord of a streak that is averaged by a loop.
@@ -74,7 +74,7 @@ impl DropsFrame {
             capture_texel: environment.texel_angle,
             form: environment.form as u32,
             mask_size: masks.size,
-            unused: 0,
+            known: 0,
             light_terms: options.light.form.terms(),
             streak_samples,
             streak_color: options.exposure.color as u32,

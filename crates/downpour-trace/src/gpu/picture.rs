@@ -17,8 +17,8 @@ use rayon::prelude::*;
 use downpour_render::RenderError;
 use downpour_render::camera::{Camera, Viewpoint};
 use downpour_render::gpu::{
-    BehindGlass, EnvironmentMap, FallingOnGpu, GlowPipeline, RainOnGpu, RainPipeline, RefinePipeline,
-    TonePipeline, TonedLayers,
+    BehindGlass, EnvironmentMap, FallingOnGpu, GlowPipeline, KeptLight, RainOnGpu, RainPipeline,
+    RefinePipeline, TonePipeline, TonedLayers,
 };
 use downpour_render::picture::{DeviceUse, Picture, PictureOptions};
 use downpour_render::rain::{DropMasks, Rain};
@@ -27,7 +27,7 @@ use downpour_render::tone::Tone;
 use super::falling::{FallingPass, FoundDrops, FoundReadback, PictureDrops};
 use super::scene::{SceneOnGpu, ScenePipeline};
 use crate::data::{RenderFrame, SceneData};
-use crate::kept::KeptPlate;
+use crate::kept::{KeptPlate, seedless};
 use crate::kept_environment::KeptEnvironment;
 use crate::picture::picture_frame;
 use crate::scene::SceneView;
@@ -97,6 +97,8 @@ pub struct PictureRenderer {
     plate: Arc<Mutex<Option<KeptPlate<wgpu::Buffer>>>>,
     /// The environment map of the last picture, if it was to be kept.
     environment: Arc<Mutex<Option<KeptEnvironment<wgpu::Buffer>>>>,
+    /// The light of the rain of the last picture, with its frame without a seed, if it was to be kept.
+    light: Arc<Mutex<Option<(RenderFrame, KeptLight)>>>,
 }
 
 /// Use of a picture.
@@ -132,6 +134,7 @@ impl PictureRenderer {
             uploaded: Arc::default(),
             plate: Arc::default(),
             environment: Arc::default(),
+            light: Arc::default(),
         })
     }
 
@@ -246,6 +249,7 @@ impl PictureRenderer {
         let around_kept = if of.kept_frames > 0 { around.take() } else { None };
         let plate = self.scene.plate_around(pool, &uploaded.0, &frame, &rain, environment)?;
         let captured = plate.finest();
+        let stands_still = next.is_none() && captured.is_empty();
         let mut is_captured = false;
         if let Some((frame, count)) = next {
             let traced = self.scene.prepare_paced(pool, &uploaded.0, &frame, pace)?;
@@ -285,7 +289,13 @@ impl PictureRenderer {
         let lights = [rain.lights(&view, masks)?, rain.streak_lights(&view, masks)?];
         let of_masks = (&uploaded.1, masks);
         let of_rain = (&rain, &options.rain);
-        let pass = self.rain.prepare_falling(pool, &plate.of(&clean), of_masks, of_rain, &lights, falling)?;
+        let mut pass =
+            self.rain.prepare_falling(pool, &plate.of(&clean), of_masks, of_rain, &lights, falling)?;
+        let mut light = self.light.lock().unwrap_or_else(PoisonError::into_inner);
+        // Any picture writes where that of the last one is.
+        let before = light.take().filter(|(of, _)| stands_still && *of == seedless(&frame));
+        let kept_light =
+            stays.is_some().then(|| pass.keep_light(pool, before.as_ref().map(|(_, light)| light)));
         if !captured.is_empty() {
             let finest = if is_captured { Vec::new() } else { captured };
             passes.run("capture", &[finest, pass.environment()].concat())?;
@@ -332,8 +342,9 @@ impl PictureRenderer {
         if stays.is_some() {
             *kept = stays;
             *around = around_kept;
+            *light = kept_light.map(|light| (seedless(&frame), light));
         }
-        drop((kept, around));
+        drop((kept, around, light));
         let device = DeviceUse { bytes_uploaded: pool.written(), buffers_made: pool.made() - made_before };
         Ok(PictureOnGpu {
             gpu: self.gpu.clone(),
