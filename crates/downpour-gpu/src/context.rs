@@ -220,22 +220,44 @@ impl Gpu {
         stages: &[&[Dispatch<'_>]],
         timestamps: Option<Timestamps<'_>>,
     ) -> Result<wgpu::CommandBuffer, GpuError> {
-        for dispatch in stages.iter().copied().flatten() {
-            dispatch.check(&self.device.limits())?;
-        }
-        self.create("a command buffer", 0, |device| {
-            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            for (k, dispatches) in stages.iter().enumerate() {
-                let timestamp_writes =
-                    timestamps.and_then(|timestamps| timestamps.of_pass(k == 0, k + 1 == stages.len()));
-                let descriptor = wgpu::ComputePassDescriptor { label: None, timestamp_writes };
-                let mut pass = encoder.begin_compute_pass(&descriptor);
-                for dispatch in *dispatches {
-                    dispatch.encode_in(&mut pass);
-                }
-            }
-            encoder.finish()
+        let mut encoder = self.encoder()?;
+        self.record_in(&mut encoder, stages, timestamps)?;
+        self.finish(encoder)
+    }
+
+    /// An encoder of commands.
+    pub(crate) fn encoder(&self) -> Result<wgpu::CommandEncoder, GpuError> {
+        self.create("a command encoder", 0, |device| {
+            device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
         })
+    }
+
+    /// Ends an encoder, which says now what was wrong with its commands.
+    pub(crate) fn finish(&self, encoder: wgpu::CommandEncoder) -> Result<wgpu::CommandBuffer, GpuError> {
+        self.create("a command buffer", 0, |_| encoder.finish())
+    }
+
+    /// Records stages of dispatches as [`Gpu::record_stages`] does.
+    pub(crate) fn record_in(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        stages: &[&[Dispatch<'_>]],
+        timestamps: Option<Timestamps<'_>>,
+    ) -> Result<(), GpuError> {
+        let limits = self.device.limits();
+        for dispatch in stages.iter().copied().flatten() {
+            dispatch.check(&limits)?;
+        }
+        for (k, dispatches) in stages.iter().enumerate() {
+            let timestamp_writes =
+                timestamps.and_then(|timestamps| timestamps.of_pass(k == 0, k + 1 == stages.len()));
+            let descriptor = wgpu::ComputePassDescriptor { label: None, timestamp_writes };
+            let mut pass = encoder.begin_compute_pass(&descriptor);
+            for dispatch in *dispatches {
+                dispatch.encode_in(&mut pass);
+            }
+        }
+        Ok(())
     }
 
     /// Submits recorded commands in one submission, and destroys the device if the options ask for it.

@@ -38,7 +38,7 @@ pub use adapter::{AdapterChoice, AdapterDescription};
 pub use context::{Gpu, GpuOptions, LimitSet};
 pub use error::GpuError;
 pub use kernel::{ComputeKernel, Dispatch};
-pub use passes::{FramePasses, FrameTimes};
+pub use passes::{FramePasses, FrameQueries, FrameTimes, TICKS};
 pub use pool::{BufferPool, BufferSource};
 pub use readback::{Readback, ReadbackPool};
 pub use sequence::{KernelSequence, SequencePass};

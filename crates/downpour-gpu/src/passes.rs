@@ -1,9 +1,13 @@
 //! Passes of a frame, submitted one after the other, with the time of each.
 
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use crate::context::Timestamps;
-use crate::{Dispatch, Gpu, GpuError};
+use crate::{BufferSource, Dispatch, Gpu, GpuError};
+
+/// Label of the buffers of ticks: a pool that is to keep them is given them back when they have been read.
+pub const TICKS: &str = "times of passes";
 
 /// Submissions after which the host waits, so that what hangs is found: far more than a frame of usual size has.
 const WAIT_EVERY: usize = 256;
@@ -15,9 +19,13 @@ pub struct FramePasses {
     gpu: Gpu,
     clock: Option<Clock>,
     times: Vec<(&'static str, PassEnd)>,
-    /// Passes that are not submitted yet: each submission costs the host as much as some passes.
-    recorded: Vec<wgpu::CommandBuffer>,
+    /// Passes that are not submitted yet: each command buffer and each submission costs the host as much as some passes.
+    recorded: Option<wgpu::CommandEncoder>,
 }
+
+/// Timestamps of a device's frames, which one frame after the other uses.
+#[derive(Debug, Default)]
+pub struct FrameQueries(Mutex<Option<wgpu::QuerySet>>);
 
 /// Timestamps of passes: begin and end of the n-th are the queries 2 n and 2 n + 1.
 #[derive(Debug)]
@@ -52,26 +60,28 @@ impl FramePasses {
     /// # Errors
     /// As [`Gpu::create`].
     pub fn new(gpu: &Gpu, most: u32) -> Result<Self, GpuError> {
+        Self::after(&FrameQueries::default(), gpu, most)
+    }
+
+    /// The same with the queries of the frame before, of as many passes, and a buffer of ticks from `buffers`, whose label is [`TICKS`].
+    ///
+    /// # Errors
+    /// As [`Gpu::create`].
+    pub fn after(queries: &FrameQueries, buffers: &impl BufferSource, most: u32) -> Result<Self, GpuError> {
+        let gpu = buffers.gpu();
         let adapter = gpu.adapter();
         let clock = if adapter.timestamps && !adapter.is_software() {
-            let queries = gpu.create("timestamp queries", u64::from(16 * most), |device| {
-                device.create_query_set(&wgpu::QuerySetDescriptor {
-                    label: Some("times of passes"),
-                    ty: wgpu::QueryType::Timestamp,
-                    count: 2 * most,
-                })
-            })?;
-            let usage = wgpu::BufferUsages::QUERY_RESOLVE;
-            Some(Clock {
-                queries,
-                ticks: gpu.empty_buffer("times of passes", u64::from(16 * most), usage)?,
-                most,
-                used: 0,
-            })
+            let mut kept = queries.0.lock().unwrap_or_else(PoisonError::into_inner);
+            let queries = match &*kept {
+                Some(queries) => queries.clone(),
+                None => kept.insert(query_set(gpu, most)?).clone(),
+            };
+            let ticks = buffers.buffer(TICKS, u64::from(16 * most), wgpu::BufferUsages::QUERY_RESOLVE)?;
+            Some(Clock { queries, ticks, most, used: 0 })
         } else {
             None
         };
-        Ok(Self { gpu: gpu.clone(), clock, times: Vec::new(), recorded: Vec::new() })
+        Ok(Self { gpu: gpu.clone(), clock, times: Vec::new(), recorded: None })
     }
 
     /// Notes the time of other work, ms.
@@ -133,7 +143,7 @@ impl FramePasses {
     ) -> Result<(), GpuError> {
         let Some(clock) = self.clock.as_mut().filter(|clock| clock.used < clock.most && !parts.is_empty())
         else {
-            self.submit_recorded();
+            submit(&self.gpu, &mut self.recorded)?;
             let begin = Instant::now();
             for part in parts {
                 self.gpu.submit_commands([self.gpu.record_stages(part, None)?]);
@@ -151,9 +161,13 @@ impl FramePasses {
                 begin: is_first.then_some(2 * used),
                 end: is_last.then_some(2 * used + 1),
             };
-            self.recorded.push(self.gpu.record_stages(part, Some(timestamps))?);
+            let encoder = match &mut self.recorded {
+                Some(encoder) => encoder,
+                None => self.recorded.insert(self.gpu.encoder()?),
+            };
+            self.gpu.record_in(encoder, part, Some(timestamps))?;
             if apart {
-                self.gpu.submit_commands(self.recorded.drain(..));
+                submit(&self.gpu, &mut self.recorded)?;
             }
             if k % WAIT_EVERY == WAIT_EVERY - 1 {
                 self.gpu.wait()?;
@@ -163,12 +177,6 @@ impl FramePasses {
         Ok(())
     }
 
-    fn submit_recorded(&mut self) {
-        if !self.recorded.is_empty() {
-            self.gpu.submit_commands(self.recorded.drain(..));
-        }
-    }
-
     /// Ends the passes. The buffer, of a device with a clock, holds its ticks for [`FrameTimes::read`] as soon as the device is done.
     ///
     /// # Errors
@@ -176,18 +184,36 @@ impl FramePasses {
     pub fn end(mut self) -> Result<(FrameTimes, Option<wgpu::Buffer>), GpuError> {
         let mut ticks = None;
         if let Some(clock) = self.clock.take().filter(|clock| clock.used > 0) {
-            let commands = self.gpu.create("times of passes", 0, |device| {
-                let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-                encoder.resolve_query_set(&clock.queries, 0..2 * clock.used, &clock.ticks, 0);
-                encoder.finish()
-            })?;
-            self.recorded.push(commands);
+            let encoder = match &mut self.recorded {
+                Some(encoder) => encoder,
+                None => self.recorded.insert(self.gpu.encoder()?),
+            };
+            encoder.resolve_query_set(&clock.queries, 0..2 * clock.used, &clock.ticks, 0);
             ticks = Some(clock.ticks);
         }
-        self.submit_recorded();
+        submit(&self.gpu, &mut self.recorded)?;
         let period = self.gpu.queue().get_timestamp_period().into();
         Ok((FrameTimes { times: self.times, period }, ticks))
     }
+}
+
+/// Submits what is recorded.
+fn submit(gpu: &Gpu, recorded: &mut Option<wgpu::CommandEncoder>) -> Result<(), GpuError> {
+    if let Some(encoder) = recorded.take() {
+        gpu.submit_commands([gpu.finish(encoder)?]);
+    }
+    Ok(())
+}
+
+/// Room for the timestamps of `most` passes.
+fn query_set(gpu: &Gpu, most: u32) -> Result<wgpu::QuerySet, GpuError> {
+    gpu.create("timestamp queries", u64::from(16 * most), |device| {
+        device.create_query_set(&wgpu::QuerySetDescriptor {
+            label: Some("times of passes"),
+            ty: wgpu::QueryType::Timestamp,
+            count: 2 * most,
+        })
+    })
 }
 
 impl FrameTimes {

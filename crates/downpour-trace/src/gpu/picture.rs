@@ -6,7 +6,8 @@ use std::time::Instant;
 
 use downpour_drop::oscillation::Fluids;
 use downpour_gpu::{
-    BufferPool, BufferSource as _, FramePasses, FrameTimes, Gpu, GpuError, Readback, ReadbackPool, wgpu,
+    BufferPool, BufferSource as _, FramePasses, FrameQueries, FrameTimes, Gpu, GpuError, Readback,
+    ReadbackPool, TICKS, wgpu,
 };
 use downpour_shaders::render::puddle_water::PUDDLE_WATER_RAYS;
 use downpour_sim::SimError;
@@ -67,8 +68,8 @@ impl From<GpuSimError> for GpuPictureError {
 }
 
 /// Labels of the buffers that a picture keeps.
-const GIVEN_AWAY: [&str; 6] =
-    ["picture", "rain", "environment map", "distances of drops", "glow", "display picture"];
+const GIVEN_AWAY: [&str; 7] =
+    ["picture", "rain", "environment map", "distances of drops", "glow", "display picture", TICKS];
 
 /// Room for passes that are timed by the device.
 const MAX_PASSES: u32 = 32;
@@ -87,6 +88,7 @@ pub struct PictureRenderer {
     /// Locked for as long as a picture is drawn with the pool's buffers.
     drawing: Arc<Mutex<()>>,
     readbacks: ReadbackPool,
+    queries: Arc<FrameQueries>,
     /// Frequencies of the drops of the last picture, and their fluids.
     frequencies: Arc<Mutex<Option<(Fluids, wgpu::Buffer)>>>,
     /// Time of a sample of the last picture that was read, ms.
@@ -129,6 +131,7 @@ impl PictureRenderer {
             pool: Arc::new(BufferPool::new(gpu).with_given_away(&GIVEN_AWAY)),
             drawing: Arc::default(),
             readbacks: ReadbackPool::default(),
+            queries: Arc::default(),
             frequencies: Arc::default(),
             pace: Arc::default(),
             uploaded: Arc::default(),
@@ -199,10 +202,10 @@ impl PictureRenderer {
         if self.gpu.adapter().is_software() {
             check_turns(&frame)?;
         }
-        let mut passes = FramePasses::new(&self.gpu, MAX_PASSES)?;
         let _drawing = self.drawing.lock().unwrap_or_else(PoisonError::into_inner);
         let pool = &*self.pool;
         pool.begin_frame();
+        let mut passes = FramePasses::after(&self.queries, pool, MAX_PASSES)?;
         let made_before = pool.made();
         let uploaded = passes.host("upload", || {
             let mut last = self.uploaded.lock().unwrap_or_else(PoisonError::into_inner);
@@ -339,6 +342,7 @@ impl PictureRenderer {
         layers.push(("distances of drops", distances.clone()));
         layers.extend(glow.iter().map(|glow| ("glow", glow.clone())));
         layers.extend(pixels.iter().map(|pixels| ("display picture", pixels.clone())));
+        layers.extend(ticks.iter().map(|ticks| (TICKS, ticks.clone())));
         if stays.is_some() {
             *kept = stays;
             *around = around_kept;
