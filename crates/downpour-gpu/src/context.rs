@@ -248,16 +248,18 @@ impl Gpu {
         for dispatch in stages.iter().copied().flatten() {
             dispatch.check(&limits)?;
         }
-        for (k, dispatches) in stages.iter().enumerate() {
-            let timestamp_writes =
-                timestamps.and_then(|timestamps| timestamps.of_pass(k == 0, k + 1 == stages.len()));
-            let descriptor = wgpu::ComputePassDescriptor { label: None, timestamp_writes };
-            let mut pass = encoder.begin_compute_pass(&descriptor);
-            for dispatch in *dispatches {
-                dispatch.encode_in(&mut pass);
+        // A pass may say at once what is wrong with it.
+        self.create("a pass", 0, |_| {
+            for (k, dispatches) in stages.iter().enumerate() {
+                let timestamp_writes =
+                    timestamps.and_then(|timestamps| timestamps.of_pass(k == 0, k + 1 == stages.len()));
+                let descriptor = wgpu::ComputePassDescriptor { label: None, timestamp_writes };
+                let mut pass = encoder.begin_compute_pass(&descriptor);
+                for dispatch in *dispatches {
+                    dispatch.encode_in(&mut pass);
+                }
             }
-        }
-        Ok(())
+        })
     }
 
     /// Submits recorded commands in one submission, and destroys the device if the options ask for it.
