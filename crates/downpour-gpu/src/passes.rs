@@ -161,10 +161,7 @@ impl FramePasses {
                 begin: is_first.then_some(2 * used),
                 end: is_last.then_some(2 * used + 1),
             };
-            let encoder = match &mut self.recorded {
-                Some(encoder) => encoder,
-                None => self.recorded.insert(self.gpu.encoder()?),
-            };
+            let encoder = encoder(&self.gpu, &mut self.recorded)?;
             self.gpu.record_in(encoder, part, Some(timestamps))?;
             if apart {
                 submit(&self.gpu, &mut self.recorded)?;
@@ -184,16 +181,24 @@ impl FramePasses {
     pub fn end(mut self) -> Result<(FrameTimes, Option<wgpu::Buffer>), GpuError> {
         let mut ticks = None;
         if let Some(clock) = self.clock.take().filter(|clock| clock.used > 0) {
-            let encoder = match &mut self.recorded {
-                Some(encoder) => encoder,
-                None => self.recorded.insert(self.gpu.encoder()?),
-            };
+            let encoder = encoder(&self.gpu, &mut self.recorded)?;
             encoder.resolve_query_set(&clock.queries, 0..2 * clock.used, &clock.ticks, 0);
             ticks = Some(clock.ticks);
         }
         submit(&self.gpu, &mut self.recorded)?;
         let period = self.gpu.queue().get_timestamp_period().into();
         Ok((FrameTimes { times: self.times, period }, ticks))
+    }
+}
+
+/// The encoder of what is recorded, begun if there is none.
+fn encoder<'a>(
+    gpu: &Gpu,
+    recorded: &'a mut Option<wgpu::CommandEncoder>,
+) -> Result<&'a mut wgpu::CommandEncoder, GpuError> {
+    match recorded {
+        Some(encoder) => Ok(encoder),
+        none => Ok(none.insert(gpu.encoder()?)),
     }
 }
 

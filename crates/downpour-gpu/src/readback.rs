@@ -1,5 +1,6 @@
 //! Readback from the device, which detects loss, hangs and late errors.
 
+use std::ops::Range;
 use std::sync::mpsc;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -46,12 +47,19 @@ impl ReadbackPool {
     /// # Errors
     /// As [`Gpu::create`].
     pub fn begin(&self, gpu: &Gpu, buffers: &[&wgpu::Buffer]) -> Result<Readback, GpuError> {
-        let staging = buffers.iter().map(|buffer| self.staging(gpu, buffer.size()));
+        let whole: Vec<_> = buffers.iter().map(|buffer| (*buffer, 0..buffer.size())).collect();
+        self.begin_parts(gpu, &whole)
+    }
+
+    /// The same of parts of buffers: ranges of bytes, multiples of 4.
+    fn begin_parts(&self, gpu: &Gpu, parts: &[(&wgpu::Buffer, Range<u64>)]) -> Result<Readback, GpuError> {
+        let bytes = |part: &Range<u64>| part.end - part.start;
+        let staging = parts.iter().map(|(_, part)| self.staging(gpu, bytes(part)));
         let staging: Vec<wgpu::Buffer> = staging.collect::<Result<_, _>>()?;
         let commands = gpu.create("a readback", 0, |device| {
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            for (buffer, staging) in buffers.iter().zip(&staging) {
-                encoder.copy_buffer_to_buffer(buffer, 0, staging, 0, buffer.size());
+            for ((buffer, part), staging) in parts.iter().zip(&staging) {
+                encoder.copy_buffer_to_buffer(buffer, part.start, staging, 0, bytes(part));
             }
             encoder.finish()
         })?;
@@ -64,7 +72,7 @@ impl ReadbackPool {
             });
             Some(Staging { buffer, bytes, mapped })
         };
-        let sizes = buffers.iter().map(|buffer| buffer.size());
+        let sizes = parts.iter().map(|(_, part)| bytes(part));
         let staging = staging.into_iter().zip(sizes).map(mapped).collect();
         Ok(Readback { gpu: gpu.clone(), pool: self.clone(), staging, submission })
     }
@@ -136,5 +144,14 @@ impl Gpu {
     /// [`GpuError::Lost`], [`GpuError::Hung`], [`GpuError::OutOfMemory`] or [`GpuError::Refused`].
     pub fn read<T: Pod>(&self, buffer: &wgpu::Buffer) -> Result<Vec<T>, GpuError> {
         ReadbackPool::default().begin(self, &[buffer])?.take(0)
+    }
+
+    /// Waits as [`Gpu::read`] does and reads some of the `T` that `buffer` holds, of which there are as many.
+    ///
+    /// # Errors
+    /// As [`Gpu::read`].
+    pub fn read_part<T: Pod>(&self, buffer: &wgpu::Buffer, part: Range<u64>) -> Result<Vec<T>, GpuError> {
+        let bytes = part.start * size_of::<T>() as u64..part.end * size_of::<T>() as u64;
+        ReadbackPool::default().begin_parts(self, &[(buffer, bytes)])?.take(0)
     }
 }

@@ -46,11 +46,7 @@ pub(crate) struct Listing<'a> {
 }
 
 /// Drops that a picture can show; `kept` are the impacts of each span of the last steps.
-pub(crate) fn listed<E: AsRef<[StepEvent]>>(
-    listing: &Listing<'_>,
-    drops: &[StepDrop],
-    kept: &[E],
-) -> VisibleDrops {
+pub(crate) fn listed(listing: &Listing<'_>, drops: &[StepDrop], kept: &[Vec<StepEvent>]) -> VisibleDrops {
     let frame = StepListFrame::new(listing.plan, listing.view, listing.after_s);
     let splash = SplashFrame::of_picture(listing.splashes, listing.view);
     let world = StepListWorld { frame: &frame, speeds: listing.speeds, map: listing.map, splash: &splash };
@@ -66,7 +62,7 @@ pub(crate) fn listed<E: AsRef<[StepEvent]>>(
     let mut visible: Vec<FallingDrop> = drops.par_iter().enumerate().flat_map_iter(shown).collect();
     let spans = listing.plan.recent.before(listing.after_s, eye);
     for (events, span) in kept.iter().zip(spans) {
-        let crowns = events.as_ref().iter().filter_map(|event| {
+        let crowns = events.iter().filter_map(|event| {
             let crown = splash.splash_crown(&step_splash_drop(event, span), event.normal())?;
             Some(crown.to_falling(eye, DropKind::Splash))
         });

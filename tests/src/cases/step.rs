@@ -687,6 +687,18 @@ fn list_case(gpu: &Gpu, setup: Listed) -> Result<Run, GpuError> {
     }
     let shown = eye(21);
     let listed = cpu.visible_after(after_s, &shown, map.as_ref(), splashes.as_ref());
+    if !on_device {
+        // The same state, listed by the host from what the device holds.
+        let held = twin.visible_after(after_s, &shown, map.as_ref(), splashes.as_ref()).map_err(of_gpu)?;
+        let crowns = |drops: &[FallingDrop]| {
+            let crowns = drops.iter().filter(|drop| drop.kind == DropKind::Splash);
+            crowns.map(|crown| (crown.id, crown.position)).collect::<Vec<_>>()
+        };
+        let [mut held, mut expected] = [&held.drops, &listed.drops].map(|drops| crowns(drops));
+        held.sort_by_key(|crown| crown.0);
+        expected.sort_by_key(|crown| crown.0);
+        assert!(held == expected, "{} crowns of the device, {}", held.len(), expected.len());
+    }
     let outside = |drop: &FallingDrop| match pane {
         Some([x, y, z, distance]) => drop.beyond(Vec3::new(x, y, z), distance, &shown),
         None => Some(*drop),

@@ -360,8 +360,10 @@ impl GpuSimulation {
         let counts = self.gpu.read::<u32>(&self.counts)?;
         let &[events, drops, low, high, lost, ..] = &counts[..] else { return Ok(StepEvents::default()) };
         let recorded = events.min(self.plan.options.max_events);
-        let mut list = if recorded > 0 { self.gpu.read::<StepEvent>(&self.events)? } else { Vec::new() };
-        list.truncate(recorded as usize);
+        let mut list = match recorded {
+            0 => Vec::new(),
+            _ => self.gpu.read_part::<StepEvent>(&self.events, 0..recorded.into())?,
+        };
         list.sort_by_key(|event| {
             (event.drop & 0x3fff_ffff, event.drop >> 30, event.position.map(f32::to_bits))
         });
@@ -427,11 +429,16 @@ impl GpuSimulation {
 
     /// Impacts that may show splashes, by the spans of the plan.
     fn kept(&self) -> Result<Vec<Vec<StepEvent>>, GpuSimError> {
-        let (events, room) = (self.gpu.read::<StepEvent>(&self.events)?, self.plan.options.max_kept as usize);
-        let behind = events.get(self.plan.options.max_events as usize..).unwrap_or_default();
+        let (first, room) = (self.plan.options.max_events, self.plan.options.max_kept);
         let counts = self.gpu.read::<u32>(&self.counts)?;
-        let held = |(span, &count): (&[StepEvent], &u32)| span[..room.min(count as usize)].to_vec();
-        Ok(behind.chunks_exact(room.max(1)).zip(&counts[COUNTS..]).map(held).collect())
+        let held = |(span, &count): (u32, &u32)| match count.min(room) {
+            0 => Ok(Vec::new()),
+            held => {
+                let begin = u64::from(first) + u64::from(span) * u64::from(room);
+                self.gpu.read_part(&self.events, begin..begin + u64::from(held))
+            }
+        };
+        Ok((0..).zip(&counts[COUNTS..]).map(held).collect::<Result<_, GpuError>>()?)
     }
 
     /// Makes ready to list the drops that a picture can show some time after the state. Drops that had no room among those of the rain

@@ -425,12 +425,6 @@ impl SceneOnGpu {
         Ok(LightingOnGpu { buffers: [frame, nodes, triangles, corners, table, texels] })
     }
 
-    /// Nodes and triangles of the scene's bounding volume hierarchy (`downpour_bvh::Bvh`).
-    #[must_use]
-    pub fn obstacles(&self) -> [&wgpu::Buffer; 2] {
-        [&self.nodes, &self.triangles]
-    }
-
     /// Buffers that a kernel that traces the scene reads, by their bindings.
     fn buffers<'a>(&'a self, frame: &'a wgpu::Buffer) -> [(u32, &'a wgpu::Buffer); 7] {
         let [nodes, triangles, corners] = [&self.nodes, &self.triangles, &self.corners];
