@@ -12,7 +12,7 @@ use downpour_tests::sources::rust_files;
 
 /// WGSL functions whose work a Rust function of another name does, and where. Kernel-level cases compare the results.
 const ELSEWHERE: [(&[&str], &str); 13] = [
-    (&["trace_place"], "which invocation has which pixel; the CPU traces rows"),
+    (&["spacing_place"], "which invocation has which pixel; the CPU traces rows"),
     (
         &[
             "puddle_is_finite",

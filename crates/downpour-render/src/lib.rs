@@ -27,6 +27,7 @@ pub mod picture;
 pub mod plate;
 pub mod rain;
 pub mod refine;
+pub mod spacing;
 pub mod tone;
 pub mod wind_picture;
 

@@ -34,8 +34,8 @@ pub struct PictureOptions {
     pub grid: u32,
     /// Rays to the sky per sample; 0: nothing hides the sky.
     pub sky_rays: u32,
-    /// Distance in pixels between those whose rays look for the light of sky and surfaces, which the pixels between take from them: 1 to
-    /// 4; 1: all do.
+    /// Distance in pixels between those whose rays look for the light of sky and surfaces, and of lamps on unresolved rain, which
+    /// the pixels between take from them: 1 to 4; 1: all do.
     pub ray_spacing: u32,
     /// Seed of the rays: [`noise_seed`] for the frames of a clip.
     pub seed: u64,

@@ -13,6 +13,7 @@ use glam::Vec3;
 use crate::camera::Camera;
 use crate::light::Light;
 use crate::rain::EnvironmentMap;
+use crate::spacing::RaySpacing;
 
 /// Lamps, and what hides them and keeps the rain off.
 pub trait Lighting: Debug + Sync {
@@ -30,6 +31,11 @@ pub trait Lighting: Debug + Sync {
 
     /// True if there are no obstacles at all.
     fn is_open(&self) -> bool;
+
+    /// Pixels whose rays look for the light of lamps on unresolved rain, for those around them: all, unless a plate is drawn with fewer.
+    fn ray_spacing(&self) -> RaySpacing {
+        RaySpacing::ALL
+    }
 }
 
 /// A picture without rain, with all that is needed to add rain.

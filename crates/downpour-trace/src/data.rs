@@ -10,6 +10,7 @@ use downpour_math::rng::rng_draw;
 use downpour_render::RenderError;
 use downpour_render::camera::{Camera, Viewpoint};
 use downpour_render::light::{Light, LightSource};
+use downpour_render::spacing::RaySpacing;
 use downpour_shaders::render::scene::{
     SCENE_LIGHT_BODY, SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_ROWS, SCENE_PICTURE, SCENE_SKY_LEVELS,
     SKYLIGHT_RADIUS,
@@ -284,5 +285,11 @@ impl RenderFrame {
             ray_fraction,
             ..self
         }
+    }
+
+    /// Those pixels.
+    #[must_use]
+    pub fn pixels_that_look(&self) -> RaySpacing {
+        RaySpacing { spacing: self.ray_spacing, column: self.ray_column, row: self.ray_row }
     }
 }

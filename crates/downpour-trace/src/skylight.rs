@@ -13,6 +13,7 @@
 //! [`RenderFrame::ray_spacing`]: crate::data::RenderFrame::ray_spacing
 
 use downpour_math::color::color_luminance;
+use downpour_render::spacing::spacing_first;
 use downpour_shaders::render::scene::{
     SKYLIGHT_FILM, SKYLIGHT_FILM_EDGE, SKYLIGHT_GUESSED, SKYLIGHT_LOBE, SKYLIGHT_LOOSE,
     SKYLIGHT_LOOSE_ROUGHNESS, SKYLIGHT_NOISE, SKYLIGHT_PASSES, SKYLIGHT_RADIUS, SKYLIGHT_STEP,
@@ -101,13 +102,6 @@ pub fn skylight_alike(own: Vec4, other: Vec4) -> f32 {
     (1.0 - apart * apart / (SKYLIGHT_NOISE * (own.w + other.w)).max(1.0e-20)).max(0.0)
 }
 
-/// First column (or row) of a window around a pixel, of those that lie `apart` with one of them at `place`.
-#[must_use]
-pub fn skylight_first(at: u32, apart: u32, place: u32) -> u32 {
-    let first = at.saturating_sub(SKYLIGHT_RADIUS);
-    first + (place + apart - first % apart) % apart
-}
-
 /// Slots of all pixels. A mean of a slot is a color and the variance of its luminance.
 struct Pixels<'a> {
     frame: &'a RenderFrame,
@@ -174,7 +168,7 @@ impl Pixels<'_> {
                 break;
             }
             let around = |at: u32, place: u32, size: u32| {
-                let first = skylight_first(at, apart, place);
+                let first = spacing_first(at, apart, SKYLIGHT_RADIUS, place);
                 (first..=(at + SKYLIGHT_RADIUS).min(size - 1)).step_by(apart as usize)
             };
             for row in around(y, *ray_row, camera.height) {

@@ -183,12 +183,6 @@ impl SceneView<'_> {
         self.frame.camera.camera_direction(x, y)
     }
 
-    /// True if rays of a pixel look for the light of sky and surfaces; else those of its neighbors do for it.
-    fn trace_gathers(&self, x: u32, y: u32) -> bool {
-        let RenderFrame { ray_spacing, ray_column, ray_row, .. } = *self.frame;
-        x % ray_spacing == ray_column && y % ray_spacing == ray_row
-    }
-
     /// A texel of the capture: the mean of what its samples have found, where the sky is that of all directions in it, and the
     /// suns.
     fn trace_captured(&self, mean: Vec3, nearest: f32, x: u32, y: u32) -> Vec3 {
@@ -214,7 +208,7 @@ impl SceneView<'_> {
         let direction = self.trace_direction(x as f32 + dx, y as f32 + dy);
         let random = path_lattice_words(self.frame.camera.seed, x, y, index);
         let camera = &self.frame.camera;
-        let spared = !self.trace_gathers(x, y);
+        let spared = !self.frame.pixels_that_look().spacing_looks(x, y);
         let path = self.path_trace(camera.eye, direction, camera.pixel_angle, random, &state.last, spared);
         let is_picture = self.frame.projection == SCENE_PICTURE;
         state.sum += if is_picture { path.radiance } else { path.path_radiance() };

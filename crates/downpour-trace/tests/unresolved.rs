@@ -167,8 +167,20 @@ fn layer(
     medium: RainMedium,
     masks: &DropMasks,
 ) -> Vec<[f32; 4]> {
+    spaced_layer(scene, seen, size, medium, masks, 1)
+}
+
+/// The same where one pixel in each cell of `spacing` times `spacing` looks for light.
+fn spaced_layer(
+    scene: &SceneData,
+    seen: &Viewpoint,
+    size: [u32; 2],
+    medium: RainMedium,
+    masks: &DropMasks,
+    spacing: u32,
+) -> Vec<[f32; 4]> {
     let options = RainOptions { medium, capture_size: 64, ..RainOptions::default() };
-    let frame = RenderFrame::new(scene, seen, size, 1, 0, 3).expect("a frame");
+    let frame = RenderFrame::new(scene, seen, size, 1, 0, 3).expect("a frame").with_ray_spacing(spacing);
     // As in a picture: what is lit by lamps apart from its surroundings is not lit by their images.
     let frame = RenderFrame { suns_out: 1, ..frame };
     let rain = Rain::new(&frame.camera, seen.eye.as_dvec3(), &[], masks, &options);
@@ -254,6 +266,39 @@ fn unresolved_drops_scatter_lamps_as_single_scattering_says() -> Outcome {
             }
         }
         assert!((sum / of_truth - 1.0).abs() < 0.04, "{lamp}: {sum}, not {of_truth}");
+    }
+    Ok(())
+}
+
+/// Few pixels that look for the light of lamps find it for all: before a wall and beside it, near a lamp and far from it.
+#[test]
+fn few_pixels_that_look_find_the_same_light() -> Outcome {
+    let masks = masks();
+    let medium = RainMedium::new(&law(60.0), &nothing_drawn(), masks, &MediumOptions::default())?;
+    let lamp = |x: f32, y: f32, z: f32| LightSource::Point {
+        radius: 0.0,
+        position: Vec3::new(x, y, z),
+        intensity: Vec3::new(900.0, 1000.0, 1100.0),
+        range: 0.0,
+    };
+    let [seen, aside, behind] = [lamp(0.4, 0.7, -8.0), lamp(2.0, 5.0, 3.0), lamp(-4.0, 3.0, -20.0)];
+    let light = |pixel: &[f32; 4]| f64::from(pixel[0] + pixel[1] + pixel[2]);
+    // So many meters of a wall to each side; none keeps light from any drop, so that no chance is in it.
+    let in_all = |edge: f32, lamps: &[LightSource], spacing| {
+        spaced_layer(&screened(12.0, edge, lamps, [0.0; 3]), &view(0.3), [96, 64], medium, masks, spacing)
+    };
+    let all = in_all(0.001, &[seen, aside], 1);
+    let with_shadows: f64 = in_all(1.0, &[seen, aside, behind], 1).iter().map(light).sum();
+    for spacing in [2, 3, 4] {
+        let few = in_all(0.001, &[seen, aside], spacing);
+        let apart: Vec<f64> = all.iter().zip(&few).map(|(a, b)| light(b) / light(a) - 1.0).collect();
+        let worst = apart.iter().map(|apart| apart.abs()).fold(0.0, f64::max);
+        let mean = apart.iter().sum::<f64>() / apart.len() as f64;
+        assert!(worst < 0.06 && mean.abs() < 4.0e-3, "{spacing}: {worst}, {mean}");
+        assert!(few.iter().zip(&all).all(|(few, all)| few[3] == all[3]));
+        let found =
+            in_all(1.0, &[seen, aside, behind], spacing).iter().map(light).sum::<f64>() / with_shadows;
+        assert!((found - 1.0).abs() < 0.02, "{spacing}: {found}");
     }
     Ok(())
 }

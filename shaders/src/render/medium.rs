@@ -2,14 +2,21 @@
 
 use super::drop_light::DROP_GLINT;
 use super::path::PATH_LATTICE;
-use super::scene::SCENE;
+use super::scene::{DATA, SCENE, SCENE_CONSTANTS, SPACING};
 use super::table::LIGHT;
 use crate::common::RNG;
 use crate::{Kernel, Module};
 
 /// Every module of this file.
-pub const MODULES: &[&Module] =
-    &[&MEDIUM_CONSTANTS, &MEDIUM, &MEDIUM_STREAKS, &MEDIUM_OPEN, &MEDIUM_LIGHT, &MEDIUM_FILTER];
+pub const MODULES: &[&Module] = &[
+    &MEDIUM_CONSTANTS,
+    &MEDIUM,
+    &MEDIUM_STREAKS,
+    &MEDIUM_OPEN,
+    &MEDIUM_SPREAD,
+    &MEDIUM_LIGHT,
+    &MEDIUM_FILTER,
+];
 
 /// Every kernel of this file.
 pub const KERNELS: &[&Kernel] = &[&MEDIUM_OPEN_KERNEL, &MEDIUM_LIGHT_KERNEL, &MEDIUM_FILTER_KERNEL];
@@ -60,6 +67,10 @@ shared_constants! {
         MEDIUM_TURN: f32 = 0.25;
         /// Number of the lattice of a pixel's ray to a lamp.
         MEDIUM_LATTICE: u32 = 4096;
+        /// Least weight of the pixels around a pixel that look for light for it, of 1.
+        MEDIUM_SPREAD_LEAST: f32 = 0.5;
+        /// Distance from a lamp, in cells of such pixels, from which they do so.
+        MEDIUM_SPREAD_CELLS: f32 = 2.5;
         /// Dimension of the random numbers of the grid.
         MEDIUM_RANDOM_DIMENSION: u32 = 4110;
         /// Dimension of the random numbers of streaks, of the first shell.
@@ -98,18 +109,35 @@ pub static MEDIUM_OPEN: Module = Module {
     uses: &[&MEDIUM_CONSTANTS, &MEDIUM, &RNG, &SCENE],
 };
 
+/// Light before pixels that do not look for it. Twin: `downpour_render::rain::medium::spread`.
+pub static MEDIUM_SPREAD: Module = Module {
+    path: "render/medium_spread.wgsl",
+    wgsl: include_str!("../../wgsl/render/medium_spread.wgsl"),
+    uses: &[&MEDIUM_CONSTANTS, &SCENE_CONSTANTS, &MEDIUM, &LIGHT, &DATA],
+};
+
 /// Light of lamps. Twin: `downpour_render::rain::medium::light`.
 pub static MEDIUM_LIGHT: Module = Module {
     path: "render/medium_light.wgsl",
     wgsl: include_str!("../../wgsl/render/medium_light.wgsl"),
-    uses: &[&MEDIUM_CONSTANTS, &MEDIUM, &MEDIUM_OPEN, &DROP_GLINT, &PATH_LATTICE, &LIGHT, &SCENE],
+    uses: &[
+        &MEDIUM_CONSTANTS,
+        &MEDIUM,
+        &MEDIUM_OPEN,
+        &MEDIUM_SPREAD,
+        &DROP_GLINT,
+        &PATH_LATTICE,
+        &LIGHT,
+        &SCENE,
+        &SPACING,
+    ],
 };
 
 /// Means over neighbors. Twin: `downpour_render::rain::medium::filter`.
 pub static MEDIUM_FILTER: Module = Module {
     path: "render/medium_filter.wgsl",
     wgsl: include_str!("../../wgsl/render/medium_filter.wgsl"),
-    uses: &[&MEDIUM_CONSTANTS, &MEDIUM, &LIGHT, &SCENE],
+    uses: &[&MEDIUM_CONSTANTS, &MEDIUM, &MEDIUM_SPREAD, &LIGHT, &SCENE_CONSTANTS, &SPACING],
 };
 
 /// One invocation per cell and slice of the grid.

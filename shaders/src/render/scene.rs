@@ -16,8 +16,19 @@ use crate::drop::optics::OPTICS;
 use crate::{Kernel, Module};
 
 /// Every module of this file.
-pub const MODULES: &[&Module] =
-    &[&SCENE_CONSTANTS, &DATA, &TEXTURE, &SKY, &SURFACE, &EMITTER, &SCENE, &CAPTURE, &TRACE, &SKYLIGHT];
+pub const MODULES: &[&Module] = &[
+    &SCENE_CONSTANTS,
+    &DATA,
+    &TEXTURE,
+    &SKY,
+    &SURFACE,
+    &EMITTER,
+    &SCENE,
+    &CAPTURE,
+    &SPACING,
+    &TRACE,
+    &SKYLIGHT,
+];
 
 /// Every kernel of this file.
 pub const KERNELS: &[&Kernel] = &[&TRACE_KERNEL, &TRACE_SAMPLE_KERNEL, &TRACE_SEEN_KERNEL, &SKYLIGHT_KERNEL];
@@ -139,7 +150,7 @@ shared_constants! {
         /// Roughness of a lobe within which that counts most.
         SKYLIGHT_LOOSE_ROUGHNESS: f32 = 0.45;
         /// Invocations along an edge of a workgroup.
-        TRACE_GROUP: u32 = 8;
+        SPACING_GROUP: u32 = 8;
         /// Projection of a trace: the picture.
         SCENE_PICTURE: u32 = 0;
         /// Samples of the sky along an edge of a texel of the capture that shows nothing else.
@@ -213,7 +224,14 @@ pub static SCENE: Module = Module {
 pub static TRACE: Module = Module {
     path: "render/trace.wgsl",
     wgsl: include_str!("../../wgsl/render/trace.wgsl"),
-    uses: &[&SCENE, &PATH, &CAPTURE, &PACKING],
+    uses: &[&SCENE, &PATH, &CAPTURE, &SPACING, &PACKING],
+};
+
+/// Pixels whose rays look for light. Twin: `downpour_render::spacing`.
+pub static SPACING: Module = Module {
+    path: "render/spacing.wgsl",
+    wgsl: include_str!("../../wgsl/render/spacing.wgsl"),
+    uses: &[&SCENE_CONSTANTS, &DATA],
 };
 
 /// The environment capture around the eye. Twin: `downpour_trace::capture`.

@@ -7,39 +7,74 @@
 // Light of lamps, and mean distance and optical depth as halves.
 @group(0) @binding(3) var<storage, read_write> medium_filter_layer: array<vec4f>;
 
-// Weight of a neighbor, 0 to 1: 1 if its ray is as long, 0 from a relative difference of 20 %.
-fn medium_filter_weight(own: f32, other: f32) -> f32 {
-    let reach = min(own, MEDIUM_LAMP_REACH);
-    let far = min(other, MEDIUM_LAMP_REACH);
-    return max(1.0 - abs(reach - far) / (0.2 * max(reach, far)), 0.0);
+// What was found before a pixel (medium_open.wgsl), or sums of it.
+struct MediumRows {
+    // Light of lamps if nothing hid them, below 0 where others look for it; optical depth, or in a sum the weight.
+    whole: vec4f,
+    // Light of lamps that one ray has seen, and its mean distance.
+    seen: vec4f,
+}
+
+// What was found before a pixel: its two rows, or those of the pixels around it that have looked for it.
+fn medium_filter_own(x: u32, y: u32) -> MediumRows {
+    let first = medium_frame.columns * medium_frame.rows * MEDIUM_SLICES;
+    let index = y * render_frame.camera.width + x;
+    let own = MediumRows(medium_filter_found[first + 2u * index], medium_filter_found[first + 2u * index + 1u]);
+    if own.whole.x >= 0.0 {
+        return own;
+    }
+    var light = vec4f(0.0);
+    var weights = 0.0;
+    for (var k = 0u; k < 4u; k += 1u) {
+        let corner = medium_spread_corner(x, y, k);
+        let alike = medium_spread_alike(medium_filter_clean[index].w, medium_filter_clean[corner.x].w);
+        let weight = f32(corner.y) * alike;
+        if weight > 0.0 {
+            let at = first + 2u * corner.x;
+            light += vec4f(medium_filter_found[at].rgb, medium_filter_found[at + 1u].w) * weight;
+            weights += weight;
+        }
+    }
+    light /= max(weights, 1.0e-20);
+    return MediumRows(vec4f(light.rgb, own.whole.w), vec4f(0.0, 0.0, 0.0, light.w));
+}
+
+// Of the pixels of a window around a pixel that look for light, or of all: the part of their light that was seen.
+fn medium_filter_seen(x: u32, y: u32, all: bool) -> MediumRows {
+    let first = medium_frame.columns * medium_frame.rows * MEDIUM_SLICES;
+    let width = render_frame.camera.width;
+    let index = y * width + x;
+    let apart = select(render_frame.ray_spacing, 1u, all);
+    // Where fewer look, they are looked for farther away.
+    let reach = SKYLIGHT_RADIUS + 2u * (apart - 1u);
+    let left = spacing_first(x, apart, reach, render_frame.ray_column);
+    var sum = MediumRows(vec4f(0.0), vec4f(0.0));
+    for (var row = spacing_first(y, apart, reach, render_frame.ray_row); row <= min(y + reach, render_frame.camera.height - 1u); row += apart) {
+        for (var column = left; column <= min(x + reach, width - 1u); column += apart) {
+            let other = row * width + column;
+            let weight = medium_spread_alike(medium_filter_clean[index].w, medium_filter_clean[other].w);
+            let whole = medium_filter_found[first + 2u * other];
+            if weight > 0.0 && whole.x >= 0.0 {
+                sum.whole += vec4f(whole.rgb, 1.0) * weight;
+                sum.seen += medium_filter_found[first + 2u * other + 1u] * weight;
+            }
+        }
+    }
+    return sum;
 }
 
 // The light before a pixel, and two halves.
 fn medium_filter_pixel(x: u32, y: u32) -> vec4f {
-    let width = render_frame.camera.width;
-    let first = medium_frame.columns * medium_frame.rows * MEDIUM_SLICES;
-    let index = y * width + x;
-    let own = medium_filter_found[first + 2u * index];
-    let mean = medium_filter_found[first + 2u * index + 1u].w;
-    let packed = bitcast<f32>(pack2x16float(vec2f(min(mean, 6.0e4), min(own.w, 6.0e4))));
-    if light_weight(own.rgb) <= 0.0 {
+    let own = medium_filter_own(x, y);
+    let packed = bitcast<f32>(pack2x16float(vec2f(min(own.seen.w, 6.0e4), min(own.whole.w, 6.0e4))));
+    if light_weight(own.whole.rgb) <= 0.0 {
         return vec4f(vec3f(0.0), packed);
     }
-    var whole = vec3f(0.0);
-    var seen = vec3f(0.0);
-    let left = max(x, SKYLIGHT_RADIUS) - SKYLIGHT_RADIUS;
-    let top = max(y, SKYLIGHT_RADIUS) - SKYLIGHT_RADIUS;
-    for (var row = top; row <= min(y + SKYLIGHT_RADIUS, render_frame.camera.height - 1u); row += 1u) {
-        for (var column = left; column <= min(x + SKYLIGHT_RADIUS, width - 1u); column += 1u) {
-            let other = row * width + column;
-            let weight = medium_filter_weight(medium_filter_clean[index].w, medium_filter_clean[other].w);
-            if weight > 0.0 {
-                whole += medium_filter_found[first + 2u * other].rgb * weight;
-                seen += medium_filter_found[first + 2u * other + 1u].rgb * weight;
-            }
-        }
+    var sum = medium_filter_seen(x, y, false);
+    if sum.whole.w <= 0.0 {
+        sum = medium_filter_seen(x, y, true);
     }
-    return vec4f(own.rgb * seen / max(whole, vec3f(1.0e-30)), packed);
+    return vec4f(own.whole.rgb * sum.seen.rgb / max(sum.whole.rgb, vec3f(1.0e-30)), packed);
 }
 
 @compute @workgroup_size(8, 8, 1)

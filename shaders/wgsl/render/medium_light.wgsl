@@ -172,7 +172,22 @@ fn medium_light_lamp(sum: MediumLight, index: u32, direction: vec3f, reach: vec2
     return next;
 }
 
-// Light and optical depth of the unresolved drops before a pixel.
+// True if the pixels around a pixel that look for light do so for it.
+fn medium_light_is_spared(x: u32, y: u32, direction: vec3f) -> bool {
+    if spacing_looks(x, y) {
+        return false;
+    }
+    let own = medium_clean[y * render_frame.camera.width + x].w;
+    var alike = 0.0;
+    for (var k = 0u; k < 4u; k += 1u) {
+        let corner = medium_spread_corner(x, y, k);
+        alike += f32(corner.y) * medium_spread_alike(own, medium_clean[corner.x].w);
+    }
+    let whole = f32(render_frame.ray_spacing * render_frame.ray_spacing);
+    return alike >= MEDIUM_SPREAD_LEAST * whole && medium_spread_is_even(direction);
+}
+
+// Light and optical depth of the unresolved drops before a pixel; light below 0: that of the pixels around it.
 fn medium_light_pixel(x: u32, y: u32) {
     let at = medium_frame.columns * medium_frame.rows * MEDIUM_SLICES + 2u * (y * render_frame.camera.width + x);
     let scene = medium_clean[y * render_frame.camera.width + x].w;
@@ -181,6 +196,11 @@ fn medium_light_pixel(x: u32, y: u32) {
     // The sky is as it is seen through the rain beyond.
     let end = select(scene, MEDIUM_SKY_REACH, scene >= MEDIUM_SKY);
     let depth = medium_open_at(position.x, position.y, end).x;
+    if medium_light_is_spared(x, y, direction) {
+        medium_out[at] = vec4f(vec3f(-1.0), depth);
+        medium_out[at + 1u] = vec4f(0.0);
+        return;
+    }
     var sum = MediumLight(vec3f(0.0), 0.0, vec3f(0.0), 0.0, 0.0, vec2f(0.0), 0u);
     var seen = vec3f(0.0);
     if medium_frame.lit != MEDIUM_DARK && (medium_frame.all > 0.0 || medium_frame.fog.x > 0.0) {
@@ -207,8 +227,13 @@ fn medium_light_pixel(x: u32, y: u32) {
 }
 
 @compute @workgroup_size(8, 8, 1)
-fn main_medium_light(@builtin(global_invocation_id) id: vec3u) {
-    if id.x < render_frame.camera.width && id.y < render_frame.camera.height {
-        medium_light_pixel(id.x, id.y);
+fn main_medium_light(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_index) invocation: u32,
+) {
+    let at = spacing_place(group.xy, groups.xy, invocation);
+    if at.x < render_frame.camera.width && at.y < render_frame.camera.height {
+        medium_light_pixel(at.x, at.y);
     }
 }

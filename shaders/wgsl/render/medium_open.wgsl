@@ -5,7 +5,7 @@
 
 @group(0) @binding(6) var<storage, read> medium_clean: array<vec4f>;
 // First the grid, MEDIUM_SLICES rows for each cell: optical depth up to the slice's end, 1 if the slice is open. Then for each
-// pixel two: light of lamps if nothing hid them, and optical depth; light of lamps that one ray has seen, and the mean distance
+// pixel two: light of lamps if nothing hid them (below 0: that of the pixels around it), and optical depth; light of lamps that one ray has seen, and the mean distance
 // of what they light.
 @group(0) @binding(8) var<storage, read_write> medium_out: array<vec4f>;
 

@@ -94,12 +94,6 @@ fn skylight_alike(own: vec4f, other: vec4f) -> f32 {
     return max(1.0 - apart * apart / max(SKYLIGHT_NOISE * (own.w + other.w), 1.0e-20), 0.0);
 }
 
-// First column (or row) of a window around a pixel, of those that lie `apart` with one of them at `place`.
-fn skylight_first(at: u32, apart: u32, place: u32) -> u32 {
-    let first = max(at, SKYLIGHT_RADIUS) - SKYLIGHT_RADIUS;
-    return first + (place + apart - first % apart) % apart;
-}
-
 // The mean of the window around a pixel, and the variance of its luminance: of the pixels whose rays have looked for light, or of all
 // where none of those shows anything like it.
 fn skylight_mean(x: u32, y: u32, slot: u32) -> vec4f {
@@ -115,8 +109,8 @@ fn skylight_mean(x: u32, y: u32, slot: u32) -> vec4f {
     let bottom = min(y + SKYLIGHT_RADIUS, render_frame.camera.height - 1u);
     for (var turn = 0u; turn < 2u && weight <= 0.0; turn += 1u) {
         let apart = select(render_frame.ray_spacing, 1u, turn > 0u);
-        let left = skylight_first(x, apart, render_frame.ray_column);
-        for (var row = skylight_first(y, apart, render_frame.ray_row); row <= bottom; row += apart) {
+        let left = spacing_first(x, apart, SKYLIGHT_RADIUS, render_frame.ray_column);
+        for (var row = spacing_first(y, apart, SKYLIGHT_RADIUS, render_frame.ray_row); row <= bottom; row += apart) {
             for (var column = left; column <= right; column += apart) {
                 let other = skylight_slot(row * render_frame.camera.width + column, slot);
                 var counts = skylight_hat(x, column) * skylight_hat(y, row) * other.weight;

@@ -143,37 +143,6 @@ fn trace_direction(x: f32, y: f32) -> vec3f {
     return camera_direction(render_frame.camera, x, y);
 }
 
-// True if rays of a pixel look for the light of sky and surfaces; else those of its neighbors do for it.
-fn trace_gathers(x: u32, y: u32) -> bool {
-    let spacing = render_frame.ray_spacing;
-    return x % spacing == render_frame.ray_column && y % spacing == render_frame.ray_row;
-}
-
-// The pixel of an invocation of a workgroup. Invocations whose rays look for light are in workgroups of their own, which wait for no others
-// and begin first; all others are beside their neighbors, whose rays go the same way through the scene.
-fn trace_place(group: vec2u, groups: vec2u, invocation: u32) -> vec2u {
-    let spacing = render_frame.ray_spacing;
-    // An area of 64 cells of pixels, one of which in each cell looks for light, has as many workgroups as a cell has pixels.
-    let areas = groups / spacing;
-    let others = spacing * spacing - 1u;
-    var area = group.y * groups.x + group.x;
-    var cell = invocation;
-    var pixel = render_frame.ray_row * spacing + render_frame.ray_column;
-    if area >= areas.x * areas.y {
-        let later = area - areas.x * areas.y;
-        area = later / others;
-        let index = later % others * (TRACE_GROUP * TRACE_GROUP) + invocation;
-        cell = index / others;
-        let other = index % others;
-        pixel = other + select(0u, 1u, other >= pixel);
-    }
-    let corner = vec2u(area % areas.x, area / areas.x) * TRACE_GROUP;
-    // Cells in Morton order, so that any of them in a row are near each other: bits of the column and of the row in turn.
-    let column = (cell & 1u) | ((cell >> 1u) & 2u) | ((cell >> 2u) & 4u);
-    let row = ((cell >> 1u) & 1u) | ((cell >> 2u) & 2u) | ((cell >> 3u) & 4u);
-    return (corner + vec2u(column, row)) * spacing + vec2u(pixel % spacing, pixel / spacing);
-}
-
 // A pixel before its first sample.
 fn trace_begin() -> TraceState {
     var state = TraceState();
@@ -205,7 +174,7 @@ fn trace_sample(state: ptr<function, TraceState>, x: u32, y: u32, k: u32) {
     let direction = trace_direction(f32(x) + dx, f32(y) + dy);
     let random = path_lattice_words(x, y, index);
     let last = (*state).last;
-    let spared = !trace_gathers(x, y);
+    let spared = !spacing_looks(x, y);
     let path = path_trace(render_frame.camera.eye, direction, render_frame.camera.pixel_angle, random, last, spared);
     if render_frame.projection == SCENE_PICTURE {
         (*state).sum += path.radiance;
@@ -255,7 +224,7 @@ fn main_trace(
     @builtin(num_workgroups) groups: vec3u,
     @builtin(local_invocation_index) invocation: u32,
 ) {
-    let at = trace_place(group.xy, groups.xy, invocation) + vec2u(0u, render_frame.first_row);
+    let at = spacing_place(group.xy, groups.xy, invocation) + vec2u(0u, render_frame.first_row);
     if at.x >= render_frame.camera.width || at.y >= render_frame.camera.height {
         return;
     }
@@ -269,7 +238,7 @@ fn main_trace_sample(
     @builtin(num_workgroups) groups: vec3u,
     @builtin(local_invocation_index) invocation: u32,
 ) {
-    let place = trace_place(group.xy, groups.xy, invocation);
+    let place = spacing_place(group.xy, groups.xy, invocation);
     let y = place.y + render_frame.first_row;
     if place.x >= render_frame.camera.width || y >= render_frame.camera.height {
         return;

@@ -13,6 +13,7 @@ use downpour_render::picture::compose_pixel;
 use downpour_render::rain::light::{DropLightForm, DropLightOptions};
 use downpour_render::rain::medium::MediumGrain;
 use downpour_render::rain::medium::fog::medium_fog_depth;
+use downpour_render::rain::medium::spread::{medium_spread_alike, medium_spread_side};
 use downpour_render::rain::medium::streaks::{medium_streaks_column, medium_streaks_poisson};
 use downpour_render::rain::streak::streak_weight;
 use downpour_render::rain::streak_cell::{
@@ -24,7 +25,7 @@ use downpour_render::rain::{
     RefractionForm, ScreenDrop, StreakColor, StreakProfiles, StreakSamples, TemporalResponse,
 };
 use downpour_shaders::render::medium::{
-    MEDIUM, MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL, MEDIUM_STREAKS,
+    MEDIUM, MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL, MEDIUM_SPREAD, MEDIUM_STREAKS,
 };
 use downpour_shaders::render::rain::{
     COMPOSE, COMPOSE_KERNEL, DROPS_KERNEL, STREAK, STREAK_CELL, STREAK_LIGHT_KERNEL, STREAK_RAYS,
@@ -151,12 +152,14 @@ struct Placement {
     lit: Lit,
     has_pane: bool,
     has_fog: bool,
+    /// Distance in pixels between those whose rays look for light.
+    spacing: u32,
 }
 
 impl Placement {
     /// Behind a pane, in a box of drawn drops, in clear air before few lamps.
     const fn new(eye: Vec3, forward: Vec3) -> Self {
-        Self { eye, forward, drawn: Drawn::Box, lit: Lit::Few, has_pane: true, has_fog: false }
+        Self { eye, forward, drawn: Drawn::Box, lit: Lit::Few, has_pane: true, has_fog: false, spacing: 1 }
     }
 
     /// What stands there.
@@ -282,6 +285,7 @@ impl Prepared {
         let scene = placement.scene();
         let view = Viewpoint { eye, forward, up: Vec3::Y, fov_y: 0.9 };
         let frame = RenderFrame::new(&scene, &view, SIZE, 1, 1, 7).expect("a frame");
+        let frame = frame.with_ray_spacing(placement.spacing);
         let medium = placement.medium(masks);
         let options = RainOptions { capture_size: 64, capture_grid: 2, medium, ..options };
         let clean = SceneView { data: &scene, frame: &frame }.picture();
@@ -558,6 +562,23 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             |a| medium_streaks_poisson(a.f32(), a.f32()).words(),
         ),
         FunctionCase::new(
+            "medium_spread_side",
+            &MEDIUM_SPREAD,
+            &[Made(|r| {
+                let [size, spacing] = [1 + r[0] % 40, 1 + r[1] % 4];
+                vec![r[2] % size, size, spacing, r[3] % spacing, r[0] >> 31]
+            })],
+            Tol::exact("whole numbers"),
+            |a| medium_spread_side(a.u32(), a.u32(), a.u32(), a.u32(), a.u32() > 0).words(),
+        ),
+        FunctionCase::new(
+            "medium_spread_alike",
+            &MEDIUM_SPREAD,
+            &[Uniform(0.1, 100.0), Uniform(0.1, 100.0)],
+            Tol::relative(1.0e-5, 1.0e-6, "a quotient, taken from 1"),
+            |a| medium_spread_alike(a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new(
             "medium_streaks_column",
             &MEDIUM_STREAKS,
             &[Uniform(-1.0, 1.0), Uniform(-1.0, 1.0), Uniform(1.0e-4, 1.0e-2)],
@@ -745,6 +766,18 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             let light = DropLightOptions { form: DropLightForm::ImSung2022, glints: 0 };
             let options = RainOptions { light, ..RainOptions::default() };
             masks_case(gpu, BESIDE, options, &DropMasks::trace(1.333).expect("masks"), Part::Medium)
+        }),
+        medium("main_medium_light: many lamps in fog, one pixel in 9 looks", &MEDIUM_LIGHT_KERNEL, |gpu| {
+            let placement = Placement { spacing: 3, ..INSIDE };
+            rain_case(gpu, placement, RefractionForm::Direction, Exposure::default(), Part::Medium)
+        }),
+        filter("main_medium_filter: many lamps in fog, one pixel in 9 looks", |gpu| {
+            let placement = Placement { spacing: 3, ..INSIDE };
+            rain_case(gpu, placement, RefractionForm::Direction, Exposure::default(), Part::Filter)
+        }),
+        filter("main_medium_filter: lamps and sun, one pixel in 16 looks", |gpu| {
+            let placement = Placement { spacing: 4, ..LEVEL };
+            rain_case(gpu, placement, RefractionForm::Direction, Exposure::default(), Part::Filter)
         }),
         filter("main_medium_filter: many lamps in fog", |gpu| {
             rain_case(gpu, INSIDE, RefractionForm::Direction, Exposure::default(), Part::Filter)

@@ -4,12 +4,13 @@ use downpour_gpu::{Gpu, GpuError};
 use downpour_math::rng::rng_unit;
 use downpour_render::camera::Viewpoint;
 use downpour_render::light::LightSource;
+use downpour_render::spacing::spacing_first;
 use downpour_shaders::render::brdf::BRDF;
 use downpour_shaders::render::path::PATH_LATTICE;
 use downpour_shaders::render::scatter::SCATTER;
 use downpour_shaders::render::scene::{
     EMITTER, SCENE, SCENE_BLENDED, SCENE_DOUBLE_SIDED, SCENE_MASKED, SCENE_UNLIT, SKYLIGHT, SKYLIGHT_KERNEL,
-    TEXTURE, TRACE_KERNEL, TRACE_SAMPLE_KERNEL,
+    SPACING, TEXTURE, TRACE_KERNEL, TRACE_SAMPLE_KERNEL,
 };
 use downpour_trace::brdf::{
     brdf_direct, brdf_distribution, brdf_environment, brdf_fresnel, brdf_masking, brdf_visibility,
@@ -26,7 +27,7 @@ use downpour_trace::scatter::{
 };
 use downpour_trace::scene::{SceneView, scene_alpha, scene_disk, scene_softness};
 use downpour_trace::sky_light::SkyLight;
-use downpour_trace::skylight::{skylight_film, skylight_first, skylight_hat, skylight_lobe};
+use downpour_trace::skylight::{skylight_film, skylight_hat, skylight_lobe};
 use downpour_trace::texture::texture_wrap;
 use glam::{Affine3A, Vec3};
 
@@ -250,17 +251,17 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             skylight_film(a.f32(), a.f32()).words()
         }),
         FunctionCase::new(
-            "skylight_first",
-            &SKYLIGHT,
+            "spacing_first",
+            &SPACING,
             &[
                 Below(2000),
                 Made(|r| {
                     let apart = 1 + r[0] % 4;
-                    vec![apart, r[1] % apart]
+                    vec![apart, r[2] % 12, r[1] % apart]
                 }),
             ],
             Tol::exact("whole numbers"),
-            |a| skylight_first(a.u32(), a.u32(), a.u32()).words(),
+            |a| spacing_first(a.u32(), a.u32(), a.u32(), a.u32()).words(),
         ),
         FunctionCase::new(
             "skylight_hat",

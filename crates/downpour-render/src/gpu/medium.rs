@@ -8,6 +8,7 @@ use downpour_shaders::render::medium::{
 
 use super::plate::PlateOnGpu;
 use crate::rain::medium::{MediumFrame, MediumLight};
+use crate::spacing::RaySpacing;
 
 /// The pipelines of unresolved rain: made once, used for any number of pictures.
 #[derive(Clone, Debug)]
@@ -23,9 +24,8 @@ pub struct MediumPipeline {
 pub struct MediumPass<'a> {
     pipeline: &'a MediumPipeline,
     open: (wgpu::BindGroup, [u32; 3]),
-    light: wgpu::BindGroup,
-    filter: wgpu::BindGroup,
-    groups: [u32; 3],
+    light: (wgpu::BindGroup, [u32; 3]),
+    filter: (wgpu::BindGroup, [u32; 3]),
     frame: wgpu::Buffer,
     found: wgpu::Buffer,
     /// What its light is found from, besides plate and lamps.
@@ -38,6 +38,7 @@ pub struct MediumPass<'a> {
 #[derive(Clone, Debug)]
 pub(super) struct MediumOf {
     medium: MediumFrame,
+    rays: RaySpacing,
     phase: Vec<[f32; 4]>,
     found: wgpu::Buffer,
 }
@@ -55,7 +56,10 @@ impl MediumOf {
             shells: Zeroable::zeroed(),
             ..*medium
         };
-        self.found == other.found && self.phase == other.phase && still(&self.medium) == still(&other.medium)
+        self.found == other.found
+            && self.rays == other.rays
+            && self.phase == other.phase
+            && still(&self.medium) == still(&other.medium)
     }
 }
 
@@ -99,14 +103,14 @@ impl MediumPipeline {
         let of_filter = [(0, &plate.lighting.buffers[0]), (1, &found), (2, clean), (3, layer), (9, &frame)];
         let filter = self.filter.bind_at(buffers, of_filter)?;
         let cells = medium.medium.columns * medium.medium.rows;
+        let rays = medium.lighting.ray_spacing();
         Ok(MediumPass {
             pipeline: self,
             open: (open, workgroups(cells.div_ceil(MEDIUM_CELLS))),
-            light,
-            filter,
-            groups: [width.div_ceil(8), height.div_ceil(8), 1],
+            light: (light, rays.workgroups([width, height])),
+            filter: (filter, [width.div_ceil(8), height.div_ceil(8), 1]),
             frame,
-            of: MediumOf { medium: medium.medium, phase: medium.phase.clone(), found: found.clone() },
+            of: MediumOf { medium: medium.medium, rays, phase: medium.phase.clone(), found: found.clone() },
             found,
             is_known: false,
         })
@@ -123,8 +127,8 @@ impl MediumPass<'_> {
     /// The dispatches after that, in this order: the light, unless it is there already, and its filter.
     #[must_use]
     pub fn dispatches(&self) -> Vec<Dispatch<'_>> {
-        let light = self.pipeline.light.dispatch(&self.light, self.groups);
-        let filter = self.pipeline.filter.dispatch(&self.filter, self.groups);
+        let light = self.pipeline.light.dispatch(&self.light.0, self.light.1);
+        let filter = self.pipeline.filter.dispatch(&self.filter.0, self.filter.1);
         if self.is_known { vec![filter] } else { vec![light, filter] }
     }
 

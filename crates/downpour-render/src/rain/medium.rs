@@ -17,6 +17,7 @@ pub mod fog;
 mod frame;
 mod light;
 mod open;
+pub mod spread;
 pub mod streaks;
 
 use downpour_drop::DropError;

@@ -241,6 +241,8 @@ impl PictureRenderer {
             Some(plate) => plate.next(&frame, of.kept_frames),
             None => Some((frame, 1)),
         };
+        // What stands still is worth the rays of all pixels.
+        let frame = if next.is_none() { frame.with_ray_spacing(1) } else { frame };
         // Buffers that are given back when the picture has been read.
         let mut layers: Vec<(&'static str, wgpu::Buffer)> = Vec::new();
         let mut clean = stays.as_ref().map(|plate| plate.held.clone());

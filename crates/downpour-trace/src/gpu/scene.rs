@@ -213,10 +213,7 @@ impl ScenePipeline {
         rows: u32,
     ) -> Result<SceneRays<'_>, GpuError> {
         let tracer = self.tracer(frame)?;
-        let spacing = frame.ray_spacing;
-        // As many workgroups as there are pixels in a cell share an area of 64 cells.
-        let [columns, rows] = [frame.camera.width, rows].map(|size| size.div_ceil(8 * spacing) * spacing);
-        let groups = [columns, rows, 1];
+        let groups = frame.pixels_that_look().workgroups([frame.camera.width, rows]);
         let Some((seen, states)) = self.seen.as_ref().zip(states) else {
             let uniform = buffers.uniform("frame", frame)?;
             let bound = tracer.bind_at(buffers, scene.buffers(&uniform).into_iter().chain((7..).zip(to)))?;

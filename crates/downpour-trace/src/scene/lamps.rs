@@ -6,6 +6,7 @@ use downpour_drop::optics::optics_fresnel;
 use downpour_math::ops;
 use downpour_render::light::{Light, light_weight};
 use downpour_render::plate::Lighting;
+use downpour_render::spacing::RaySpacing;
 use downpour_shaders::bvh::BVH_FAR;
 use downpour_shaders::render::brdf::{BRDF_GRAZING, BRDF_MIN_DIVISOR};
 use downpour_shaders::render::puddle_water::{PUDDLE_WATER_INDEX, PUDDLE_WATER_OUTSIDE};
@@ -380,5 +381,9 @@ impl Lighting for SceneView<'_> {
 
     fn is_open(&self) -> bool {
         self.data.triangles.is_empty()
+    }
+
+    fn ray_spacing(&self) -> RaySpacing {
+        self.frame.pixels_that_look()
     }
 }

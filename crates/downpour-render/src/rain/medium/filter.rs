@@ -2,48 +2,99 @@
 //! `shaders/wgsl/render/medium_filter.wgsl`, where the method is described.
 
 use downpour_math::packing::packing_pack_half;
-use downpour_shaders::render::medium::MEDIUM_LAMP_REACH;
 use downpour_shaders::render::scene::SKYLIGHT_RADIUS;
 use glam::{Vec3, Vec4};
 
 use super::light::MediumLight;
+use super::spread::medium_spread_alike;
 use crate::light::light_weight;
+use crate::spacing::window;
 
-/// Weight of a neighbor, 0 to 1: 1 if its ray is as long, 0 from a relative difference of 20 %.
-fn medium_filter_weight(own: f32, other: f32) -> f32 {
-    let (reach, far) = (own.min(MEDIUM_LAMP_REACH), other.min(MEDIUM_LAMP_REACH));
-    (1.0 - (reach - far).abs() / (0.2 * reach.max(far))).max(0.0)
+/// What was found before a pixel, or sums of it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Rows {
+    /// Light of lamps if nothing hid them, below 0 where others look for it; optical depth, or in a sum the weight.
+    whole: Vec4,
+    /// Light of lamps that one ray has seen, and its mean distance.
+    seen: Vec4,
 }
 
-impl MediumLight<'_> {
-    /// The light before a pixel, and two halves: mean distance and optical depth.
-    pub(super) fn medium_filter_pixel(&self, clean: &[[f32; 4]], found: &[[f32; 4]], x: u32, y: u32) -> Vec4 {
-        let [width, height] = self.camera.size();
-        let first = self.grid_rows();
-        let rows = |index: u32| {
-            let at = first + 2 * index as usize;
-            (Vec4::from(found[at]), Vec4::from(found[at + 1]))
-        };
-        let index = y * width + x;
-        let (own, seen) = rows(index);
-        let packed = f32::from_bits(packing_pack_half([seen.w.min(6.0e4), own.w.min(6.0e4)]));
-        if light_weight(own.truncate()) <= 0.0 {
-            return Vec3::ZERO.extend(packed);
+/// A plate's picture with its distances, and what was found before its pixels ([`MediumLight::found`]).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Filter<'a> {
+    pub(super) light: &'a MediumLight<'a>,
+    pub(super) clean: &'a [[f32; 4]],
+    pub(super) found: &'a [[f32; 4]],
+}
+
+impl Filter<'_> {
+    fn rows(&self, index: usize) -> Rows {
+        let at = self.light.grid_rows() + 2 * index;
+        Rows { whole: self.found[at].into(), seen: self.found[at + 1].into() }
+    }
+
+    /// Weight of a neighbor.
+    fn alike(&self, index: usize, other: usize) -> f32 {
+        medium_spread_alike(self.clean[index][3], self.clean[other][3])
+    }
+
+    /// What was found before a pixel: its two rows, or those of the pixels around it that have looked for it.
+    fn medium_filter_own(&self, x: u32, y: u32) -> Rows {
+        let index = (y * self.light.camera.width + x) as usize;
+        let own = self.rows(index);
+        if own.whole.x >= 0.0 {
+            return own;
         }
-        let (mut whole, mut lit) = (Vec3::ZERO, Vec3::ZERO);
-        let left = x.max(SKYLIGHT_RADIUS) - SKYLIGHT_RADIUS;
-        let top = y.max(SKYLIGHT_RADIUS) - SKYLIGHT_RADIUS;
-        for row in top..=(y + SKYLIGHT_RADIUS).min(height - 1) {
-            for column in left..=(x + SKYLIGHT_RADIUS).min(width - 1) {
-                let other = row * width + column;
-                let weight = medium_filter_weight(clean[index as usize][3], clean[other as usize][3]);
-                if weight > 0.0 {
-                    let (found, seen) = rows(other);
-                    whole += found.truncate() * weight;
-                    lit += seen.truncate() * weight;
+        let (mut light, mut weights) = (Vec4::ZERO, 0.0);
+        for corner in 0..4 {
+            let (other, weight) = self.light.medium_spread_corner(x, y, corner);
+            let weight = weight * self.alike(index, other);
+            if weight > 0.0 {
+                let rows = self.rows(other);
+                light += rows.whole.truncate().extend(rows.seen.w) * weight;
+                weights += weight;
+            }
+        }
+        light /= f32::max(weights, 1.0e-20);
+        Rows { whole: light.truncate().extend(own.whole.w), seen: Vec3::ZERO.extend(light.w) }
+    }
+
+    /// Of the pixels of a window around a pixel that look for light, or of all: the part of their light that was seen.
+    fn medium_filter_seen(&self, x: u32, y: u32, all: bool) -> Rows {
+        let rays = self.light.lighting.ray_spacing();
+        let [width, height] = self.light.camera.size();
+        let index = (y * width + x) as usize;
+        let apart = if all { 1 } else { rays.spacing };
+        // Where fewer look, they are looked for farther away.
+        let reach = SKYLIGHT_RADIUS + 2 * (apart - 1);
+        let mut sum = Rows::default();
+        for row in window(y, apart, reach, rays.row, height) {
+            for column in window(x, apart, reach, rays.column, width) {
+                let other = (row * width + column) as usize;
+                let weight = self.alike(index, other);
+                let found = self.rows(other);
+                if weight > 0.0 && found.whole.x >= 0.0 {
+                    sum.whole += found.whole.truncate().extend(1.0) * weight;
+                    sum.seen += found.seen * weight;
                 }
             }
         }
-        (own.truncate() * lit / whole.max(Vec3::splat(1.0e-30))).extend(packed)
+        sum
+    }
+
+    /// The light before a pixel, and two halves: mean distance and optical depth.
+    pub(super) fn medium_filter_pixel(&self, x: u32, y: u32) -> Vec4 {
+        let own = self.medium_filter_own(x, y);
+        let packed = f32::from_bits(packing_pack_half([own.seen.w.min(6.0e4), own.whole.w.min(6.0e4)]));
+        let light = own.whole.truncate();
+        if light_weight(light) <= 0.0 {
+            return Vec3::ZERO.extend(packed);
+        }
+        let mut sum = self.medium_filter_seen(x, y, false);
+        if sum.whole.w <= 0.0 {
+            sum = self.medium_filter_seen(x, y, true);
+        }
+        let whole = sum.whole.truncate().max(Vec3::splat(1.0e-30));
+        (light * sum.seen.truncate() / whole).extend(packed)
     }
 }

@@ -15,6 +15,7 @@ use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::MediumFrame;
+use super::filter::Filter;
 use super::fog::{medium_fog_depth, phase_integral};
 use super::frame::{medium_both, medium_node, medium_roots};
 use crate::camera::Camera;
@@ -126,15 +127,15 @@ impl<'a> MediumLight<'a> {
     #[must_use]
     pub fn filtered(&self, clean: &[[f32; 4]], found: &[[f32; 4]]) -> Vec<[f32; 4]> {
         let [width, height] = self.camera.size();
+        let filter = Filter { light: self, clean, found };
         (0..height)
             .into_par_iter()
-            .flat_map_iter(|y| {
-                (0..width).map(move |x| self.medium_filter_pixel(clean, found, x, y).to_array())
-            })
+            .flat_map_iter(|y| (0..width).map(move |x| filter.medium_filter_pixel(x, y).to_array()))
             .collect()
     }
 
-    /// The grid of open air, then for each pixel two rows: light of lamps if nothing hid them, and optical depth; light that
+    /// The grid of open air, then for each pixel two rows: light of lamps if nothing hid them (below 0: that of the pixels around it), and
+    /// optical depth; light that
     /// one ray has seen, and its mean distance.
     #[must_use]
     pub fn found(&self, clean: &[[f32; 4]]) -> Vec<[f32; 4]> {
@@ -271,7 +272,7 @@ impl<'a> MediumLight<'a> {
         next
     }
 
-    /// Light and optical depth of the unresolved drops before a pixel.
+    /// Light and optical depth of the unresolved drops before a pixel; light below 0: that of the pixels around it.
     fn medium_light_pixel(&self, clean: &[[f32; 4]], grid: &[[f32; 4]], x: u32, y: u32) -> [[f32; 4]; 2] {
         let (medium, camera) = (&self.medium, &self.camera);
         let scene = clean[(y * camera.width + x) as usize][3];
@@ -279,6 +280,9 @@ impl<'a> MediumLight<'a> {
         let direction = camera.camera_direction(position.x, position.y);
         let end = if scene >= MEDIUM_SKY { MEDIUM_SKY_REACH } else { scene };
         let depth = self.medium_open_at(grid, position.x, position.y, end).x;
+        if self.medium_light_is_spared(clean, [x, y], direction) {
+            return [Vec3::NEG_ONE.extend(depth).to_array(), [0.0; 4]];
+        }
         let mut sum = Found::default();
         let mut seen = Vec3::ZERO;
         if medium.lit != MEDIUM_DARK && (medium.all > 0.0 || medium.fog[0] > 0.0) {

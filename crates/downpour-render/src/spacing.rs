@@ -1,0 +1,47 @@
+//! Pixels whose rays look for light that is much the same in neighboring pixels. Twin of `shaders/wgsl/render/spacing.wgsl`.
+
+#[cfg(feature = "wgpu")]
+use downpour_shaders::render::scene::SPACING_GROUP;
+
+/// Pixels whose rays look for light: one in each cell of `spacing` times `spacing` pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct RaySpacing {
+    /// Distance in pixels between those that do, at least 1.
+    pub spacing: u32,
+    /// Column of the one in each cell, below `spacing`.
+    pub column: u32,
+    /// Row of it, below `spacing`.
+    pub row: u32,
+}
+
+impl RaySpacing {
+    /// All pixels.
+    pub const ALL: Self = Self { spacing: 1, column: 0, row: 0 };
+
+    /// True if rays of a pixel look for light; else those of its neighbors do for it.
+    #[must_use]
+    pub fn spacing_looks(&self, x: u32, y: u32) -> bool {
+        x % self.spacing == self.column && y % self.spacing == self.row
+    }
+
+    /// Workgroups of 8 times 8 invocations for so many pixels, columns and rows: as many as there are pixels in a cell share an area of
+    /// 64 cells.
+    #[cfg(feature = "wgpu")]
+    #[must_use]
+    pub fn workgroups(&self, size: [u32; 2]) -> [u32; 3] {
+        let [columns, rows] = size.map(|size| size.div_ceil(SPACING_GROUP * self.spacing) * self.spacing);
+        [columns, rows, 1]
+    }
+}
+
+/// First column (or row) of a window that reaches so far around a pixel, of those that lie `apart` with one of them at `place`.
+#[must_use]
+pub fn spacing_first(at: u32, apart: u32, reach: u32, place: u32) -> u32 {
+    let first = at.saturating_sub(reach);
+    first + (place + apart - first % apart) % apart
+}
+
+/// The columns (or rows) of that window, below `size`.
+pub(crate) fn window(at: u32, apart: u32, reach: u32, place: u32, size: u32) -> impl Iterator<Item = u32> {
+    (spacing_first(at, apart, reach, place)..=(at + reach).min(size - 1)).step_by(apart as usize)
+}
