@@ -215,6 +215,10 @@ shared_constants! {
         STREAK_SPOT_LATER: f32 = 0.5698403;
         /// A lamp is looked for this fraction of a patch's size from its middle.
         STREAK_SPOT_REACH: f32 = 0.75;
+        /// Patches below this size, radians, are flat enough to tell which of their points may see a lamp.
+        STREAK_SPOT_FLAT: f32 = 1.0;
+        /// Factor of the bounds of these points, for directions have the length 1.
+        STREAK_SPOT_SLACK: f32 = 1.2;
         /// Radius of a round spot over whose points a patch's light is shared evenly enough, over their distance.
         STREAK_SPOT_WIDTH: f32 = 1.8;
         /// No edge of a disk is narrower, for the division.

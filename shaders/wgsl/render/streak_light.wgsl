@@ -184,35 +184,89 @@ fn streak_light_size(ray: StreakPatch, later: f32) -> vec2f {
     return sqrt(vec2f(dot(across, across), dot(along, along)));
 }
 
+// Radius of a spot that some of the points of a patch meet, by the patch's width across and along.
+fn streak_light_radius(size: vec2f) -> f32 {
+    let least = STREAK_SPOT_NARROW;
+    let area = max(size.x, least * size.y) * max(size.y, least * size.x);
+    return STREAK_SPOT_WIDTH * sqrt(area / f32(STREAK_SPOTS));
+}
+
+// How far directions of a patch go along an axis beside its lines across and along: in time, and by second differences; and how far away a
+// lamp is looked for.
+fn streak_light_bound(ray: StreakPatch, axis: vec3f, moved: vec3f, span: f32, reach: f32) -> f32 {
+    let squares = abs(dot(ray.across.second, axis))
+        + abs(dot(ray.along.second, axis))
+        + abs(dot(ray.later.second, axis)) * (span * span);
+    let mixed = abs(dot(ray.across_along, axis))
+        + (abs(dot(ray.across_later, axis)) + abs(dot(ray.along_later, axis))) * span;
+    return reach + STREAK_SPOT_SLACK * (0.5 * abs(dot(moved, axis)) + 0.125 * squares + 0.25 * mixed);
+}
+
+// The axis of length 1 beside a way from a direction.
+fn streak_light_beside(center: vec3f, way: vec3f) -> vec3f {
+    let axis = cross(center, way);
+    return axis / max(sqrt(dot(axis, axis)), STREAK_SPOT_EDGE);
+}
+
+// The points of a patch of which some may be nearer than `reach` to the direction of a lamp: the first, and how many follow it, from the
+// last on again from 0.
+// Beside the patch's lines along the chord the direction goes as far across as its first differences say, and else no farther than all
+// others together; that bounds where across a point may be. The like along tells whether there is any.
+fn streak_light_points(ray: StreakPatch, later: f32, span: f32, lamp: vec3f, reach: f32, shift: f32) -> vec2u {
+    let center = streak_light_direction(ray, vec3f(0.0, 0.0, later));
+    let across = ray.across.first + ray.across_later * later;
+    let along = ray.along.first + ray.along_later * later;
+    let moved = (ray.later.first + ray.later.second * later) * span;
+    let aside = streak_light_beside(center, across);
+    let wide = streak_light_bound(ray, aside, moved, span, reach) + 0.5 * STREAK_SPOT_SLACK * abs(dot(along, aside));
+    if abs(dot(lamp - center, aside)) > wide {
+        return vec2u(0u);
+    }
+    let axis = streak_light_beside(center, along);
+    let per_ray = dot(across, axis);
+    let off = dot(lamp - center, axis);
+    let half = streak_light_bound(ray, axis, moved, span, reach) + 0.5 * (STREAK_SPOT_SLACK - 1.0) * abs(per_ray);
+    if abs(off) > half + 0.5 * abs(per_ray) {
+        return vec2u(0u);
+    }
+    let firm = select(per_ray, STREAK_SPOT_EDGE, abs(per_ray) < STREAK_SPOT_EDGE);
+    let ends = clamp(vec2f(off - half, off + half) / firm, vec2f(-0.5), vec2f(0.5)) + 0.5 - shift;
+    let count = f32(STREAK_SPOTS);
+    let first = i32(floor(count * min(ends.x, ends.y) - 0.5));
+    let last = i32(ceil(count * max(ends.x, ends.y) - 0.5));
+    let number = clamp(last + 1 - first, 0, i32(STREAK_SPOTS));
+    return vec2u(u32(first + 2 * i32(STREAK_SPOTS)) % STREAK_SPOTS, u32(number));
+}
+
 // Light of a lamp with an irradiance of 1 in the fine columns of a ray's cell, as parts of the light of a chord: the mean over the
-// points of its patch, of which those that see the lamp's disk show its radiance. `reach`: the chord from the middle to the edge of the
-// disk; `span`: rays between two rows of the profile; `shift` tells the points of a patch from its neighbors'. A point stands for the
+// points of its patch, of which those that see the lamp's disk show its radiance. `width`: of the patch, across, along and in time; `spot`:
+// radius of a spot that some of its points meet; `reach`: the chord from the middle to the edge of the disk; `span`: rays between two rows of the profile; `shift` tells the points of a patch from its neighbors'. A point stands for the
 // part of the outline's area around it; what is looked up between fine columns then has the light of the points.
 fn streak_light_spot(
     ray: StreakPatch,
     later: f32,
     span: f32,
-    size: vec2f,
+    width: f32,
+    spot: f32,
     lamp: vec3f,
     reach: f32,
     cell: StreakCell,
     shift: vec3f,
 ) -> vec4f {
     var spots = vec4f(0.0);
-    let middle = streak_light_direction(ray, vec3f(0.0, 0.0, later)) - lamp;
-    let moves = sqrt(dot(ray.later.first, ray.later.first)) * span;
-    let least = STREAK_SPOT_NARROW;
-    let area = max(size.x, least * size.y) * max(size.y, least * size.x);
-    let spot = STREAK_SPOT_WIDTH * sqrt(area / f32(STREAK_SPOTS));
     let wide = max(reach, spot);
     // The edge of a disk is as soft as points are apart.
     let edge = select(0.5 * spot, 0.0, spot > reach);
-    if sqrt(dot(middle, middle)) > wide + edge + STREAK_SPOT_REACH * (size.x + size.y + moves) {
-        return spots;
-    }
     let whole = 2.0 * STREAK_QUARTER * (wide * wide + edge * edge / 3.0);
     let radiance = f32(cell.fine) / (f32(STREAK_SPOTS) * whole);
-    for (var k = 0u; k < STREAK_SPOTS; k += 1u) {
+    var points = vec2u(0u, STREAK_SPOTS);
+    if width < STREAK_SPOT_FLAT {
+        points = streak_light_points(ray, later, span, lamp, wide + edge, shift.x);
+    }
+    // In the order of all points: those past the last one come first.
+    let past = max(points.x + points.y, STREAK_SPOTS) - STREAK_SPOTS;
+    for (var turn = 0u; turn < points.y; turn += 1u) {
+        let k = select(points.x + turn - past, turn, turn < past);
         let number = f32(k) + 0.5;
         let steps = vec3f(1.0 / f32(STREAK_SPOTS), STREAK_SPOT_ALONG, STREAK_SPOT_LATER);
         let point = fract(number * steps + shift);
@@ -327,6 +381,8 @@ fn streak_light_column(path_index: u32, row: u32, column: u32) {
             let size = streak_light_size(ray, later);
             let width = max(sqrt(size.x * size.y), STREAK_NARROWEST * max(size.x, size.y));
             let direction = streak_light_direction(ray, vec3f(0.0, 0.0, later));
+            let all = size.x + size.y + sqrt(dot(ray.later.first, ray.later.first)) * rays_per_row;
+            let spot = streak_light_radius(size);
             seen += drops_capture_about(drop.towards, direction, width) * shown;
             for (var left = lit; left > 0u; left &= left - 1u) {
                 let k = firstTrailingBit(left);
@@ -335,7 +391,12 @@ fn streak_light_column(path_index: u32, row: u32, column: u32) {
                     continue;
                 }
                 let towards = streak_light_lamps[first_lamp + 2u + 2u * k].xyz;
-                let spots = streak_light_spot(ray, later, rays_per_row, size, towards, lamp.w, cell, shift);
+                let near = max(lamp.w + 0.5 * spot, spot) + STREAK_SPOT_REACH * all;
+                let apart = direction - towards;
+                if dot(apart, apart) > near * near {
+                    continue;
+                }
+                let spots = streak_light_spot(ray, later, rays_per_row, all, spot, towards, lamp.w, cell, shift);
                 for (var part = 0u; part < fine; part += 1u) {
                     sums[part] += lamp.rgb * spots[part];
                 }

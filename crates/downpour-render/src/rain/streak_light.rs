@@ -4,8 +4,9 @@ use downpour_math::packing::{packing_octahedral_decode, packing_unpack_snorm, pa
 use downpour_shaders::render::drop_light::DROP_GLINT_TINY;
 use downpour_shaders::render::rain::{
     DROPS_SHIFT, STREAK_EXITS, STREAK_LAMPS, STREAK_NARROWEST, STREAK_QUARTER, STREAK_SPOT_ALONG,
-    STREAK_SPOT_EDGE, STREAK_SPOT_FIRST, STREAK_SPOT_LATER, STREAK_SPOT_NARROW, STREAK_SPOT_REACH,
-    STREAK_SPOT_SECOND, STREAK_SPOT_THIRD, STREAK_SPOT_WIDTH, STREAK_SPOTS, STREAK_SUMS,
+    STREAK_SPOT_EDGE, STREAK_SPOT_FIRST, STREAK_SPOT_FLAT, STREAK_SPOT_LATER, STREAK_SPOT_NARROW,
+    STREAK_SPOT_REACH, STREAK_SPOT_SECOND, STREAK_SPOT_SLACK, STREAK_SPOT_THIRD, STREAK_SPOT_WIDTH,
+    STREAK_SPOTS, STREAK_SUMS,
 };
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
@@ -141,33 +142,34 @@ struct StreakCell {
 }
 
 /// Light of a lamp with an irradiance of 1 in the fine columns of a ray's cell, as parts of the light of a chord: the mean over the
-/// points of its patch, of which those that see the lamp's disk show its radiance. `reach`: the chord from the middle to the edge of the
-/// disk; `span`: rays between two rows of the profile; `shift` tells the points of a patch from its neighbors'. A point stands for the
+/// points of its patch, of which those that see the lamp's disk show its radiance. `width`: of the patch, across, along and in time; `spot`:
+/// radius of a spot that some of its points meet; `reach`: the chord from the middle to the edge of the disk; `span`: rays between two rows of the profile; `shift` tells the points of a patch from its neighbors'. A point stands for the
 /// part of the outline's area around it; what is looked up between fine columns then has the light of the points.
 fn streak_light_spot(
     ray: &StreakPatch,
     [later, span]: [f32; 2],
-    size: Vec2,
+    [width, spot]: [f32; 2],
     lamp: Vec3,
     reach: f32,
     cell: StreakCell,
     shift: Vec3,
 ) -> [f32; FINE] {
     let mut spots = [0.0; FINE];
-    let middle = streak_light_direction(ray, Vec3::new(0.0, 0.0, later)) - lamp;
-    let moves = ray.later.first.dot(ray.later.first).sqrt() * span;
-    let area = size.x.max(STREAK_SPOT_NARROW * size.y) * size.y.max(STREAK_SPOT_NARROW * size.x);
     let count = STREAK_SPOTS as f32;
-    let spot = STREAK_SPOT_WIDTH * (area / count).sqrt();
     let wide = reach.max(spot);
     // The edge of a disk is as soft as points are apart.
     let edge = if spot > reach { 0.0 } else { 0.5 * spot };
-    if middle.dot(middle).sqrt() > wide + edge + STREAK_SPOT_REACH * (size.x + size.y + moves) {
-        return spots;
-    }
     let whole = 2.0 * STREAK_QUARTER * (wide * wide + edge * edge / 3.0);
     let radiance = cell.fine as f32 / (count * whole);
-    for k in 0..STREAK_SPOTS {
+    let [first, number] = if width < STREAK_SPOT_FLAT {
+        streak_light_points(ray, [later, span], lamp, wide + edge, shift.x)
+    } else {
+        [0, STREAK_SPOTS]
+    };
+    // In the order of all points: those past the last one come first.
+    let past = (first + number).max(STREAK_SPOTS) - STREAK_SPOTS;
+    for turn in 0..number {
+        let k = if turn < past { turn } else { first + turn - past };
         let number = k as f32 + 0.5;
         let steps = Vec3::new(1.0 / count, STREAK_SPOT_ALONG, STREAK_SPOT_LATER);
         let point = (steps * number + shift).fract();
@@ -196,6 +198,62 @@ fn streak_light_spot(
         *spot *= length / streak_cell_weight(cell.column * cell.fine + part, count);
     }
     spots
+}
+
+/// Radius of a spot that some of the points of a patch meet, by the patch's width across and along.
+fn streak_light_radius(size: Vec2) -> f32 {
+    let area = size.x.max(STREAK_SPOT_NARROW * size.y) * size.y.max(STREAK_SPOT_NARROW * size.x);
+    STREAK_SPOT_WIDTH * (area / STREAK_SPOTS as f32).sqrt()
+}
+
+/// How far directions of a patch go along an axis beside its lines across and along: in time, and by second differences; and how far away a
+/// lamp is looked for.
+fn streak_light_bound(ray: &StreakPatch, axis: Vec3, moved: Vec3, span: f32, reach: f32) -> f32 {
+    let part = |way: Vec3| way.dot(axis).abs();
+    let squares = part(ray.across.second) + part(ray.along.second) + part(ray.later.second) * (span * span);
+    let mixed = part(ray.across_along) + (part(ray.across_later) + part(ray.along_later)) * span;
+    reach + STREAK_SPOT_SLACK * (0.5 * part(moved) + 0.125 * squares + 0.25 * mixed)
+}
+
+/// The axis of length 1 beside a way from a direction.
+fn streak_light_beside(center: Vec3, way: Vec3) -> Vec3 {
+    let axis = center.cross(way);
+    axis / axis.dot(axis).sqrt().max(STREAK_SPOT_EDGE)
+}
+
+/// The points of a patch of which some may be nearer than `reach` to the direction of a lamp: the first, and how many follow it, from the
+/// last on again from 0.
+fn streak_light_points(
+    ray: &StreakPatch,
+    [later, span]: [f32; 2],
+    lamp: Vec3,
+    reach: f32,
+    shift: f32,
+) -> [u32; 2] {
+    let center = streak_light_direction(ray, Vec3::new(0.0, 0.0, later));
+    let across = ray.across.first + ray.across_later * later;
+    let along = ray.along.first + ray.along_later * later;
+    let moved = (ray.later.first + ray.later.second * later) * span;
+    let aside = streak_light_beside(center, across);
+    let slanted = 0.5 * STREAK_SPOT_SLACK * along.dot(aside).abs();
+    if (lamp - center).dot(aside).abs() > streak_light_bound(ray, aside, moved, span, reach) + slanted {
+        return [0, 0];
+    }
+    let axis = streak_light_beside(center, along);
+    let per_ray = across.dot(axis);
+    let off = (lamp - center).dot(axis);
+    let slack = 0.5 * (STREAK_SPOT_SLACK - 1.0) * per_ray.abs();
+    let half = streak_light_bound(ray, axis, moved, span, reach) + slack;
+    if off.abs() > half + 0.5 * per_ray.abs() {
+        return [0, 0];
+    }
+    let firm = if per_ray.abs() < STREAK_SPOT_EDGE { STREAK_SPOT_EDGE } else { per_ray };
+    let ends = [off - half, off + half].map(|at| (at / firm).clamp(-0.5, 0.5) + 0.5 - shift);
+    let count = STREAK_SPOTS as f32;
+    let first = (count * ends[0].min(ends[1]) - 0.5).floor() as i32;
+    let last = (count * ends[0].max(ends[1]) - 0.5).ceil() as i32;
+    let number = (last + 1 - first).clamp(0, STREAK_SPOTS as i32);
+    [first.rem_euclid(STREAK_SPOTS as i32) as u32, number as u32]
 }
 
 /// From the eye to a drop's middle in a row of the profile, by the fraction of the rows before it, of length 1.
@@ -326,9 +384,16 @@ impl Streak<'_> {
                 let width = (size.x * size.y).sqrt().max(STREAK_NARROWEST * size.x.max(size.y));
                 let direction = streak_light_direction(&ray, Vec3::new(0.0, 0.0, later));
                 seen += self.view.drops_capture_about(self.drop.towards.into(), direction, width) * shown;
+                let all = size.x + size.y + ray.later.first.dot(ray.later.first).sqrt() * rays_per_row;
+                let spot = streak_light_radius(size);
                 for (lamp, towards) in self.lamps(lit).filter(|(lamp, _)| lamp.w > 0.0) {
+                    let near = (lamp.w + 0.5 * spot).max(spot) + STREAK_SPOT_REACH * all;
+                    let apart = direction - towards;
+                    if apart.dot(apart) > near * near {
+                        continue;
+                    }
                     let time = [later, rays_per_row];
-                    let spots = streak_light_spot(&ray, time, size, towards, lamp.w, cell, shift);
+                    let spots = streak_light_spot(&ray, time, [all, spot], towards, lamp.w, cell, shift);
                     for (sum, spot) in sums.iter_mut().zip(spots) {
                         *sum += lamp.truncate() * spot;
                     }
