@@ -6,17 +6,33 @@ use downpour_shaders::render::scene::SPACING_GROUP;
 /// Pixels whose rays look for light: one in each cell of `spacing` times `spacing` pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RaySpacing {
-    /// Distance in pixels between those that do, at least 1.
-    pub spacing: u32,
-    /// Column of the one in each cell, below `spacing`.
-    pub column: u32,
-    /// Row of it, below `spacing`.
-    pub row: u32,
+    spacing: u32,
+    column: u32,
+    row: u32,
 }
 
 impl RaySpacing {
     /// All pixels.
     pub const ALL: Self = Self { spacing: 1, column: 0, row: 0 };
+
+    /// One pixel in each cell of `spacing` times `spacing`, at least 1: that in a column and a row of it, counted on from 0 beyond its edge.
+    #[must_use]
+    pub fn new(spacing: u32, column: u32, row: u32) -> Self {
+        let spacing = spacing.max(1);
+        Self { spacing, column: column % spacing, row: row % spacing }
+    }
+
+    /// Distance in pixels between those that look for light, at least 1.
+    #[must_use]
+    pub fn spacing(&self) -> u32 {
+        self.spacing
+    }
+
+    /// Column and row of the one in each cell.
+    #[must_use]
+    pub fn place(&self) -> [u32; 2] {
+        [self.column, self.row]
+    }
 
     /// True if rays of a pixel look for light; else those of its neighbors do for it.
     #[must_use]

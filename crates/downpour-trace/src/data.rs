@@ -290,6 +290,6 @@ impl RenderFrame {
     /// Those pixels.
     #[must_use]
     pub fn pixels_that_look(&self) -> RaySpacing {
-        RaySpacing { spacing: self.ray_spacing, column: self.ray_column, row: self.ray_row }
+        RaySpacing::new(self.ray_spacing, self.ray_column, self.ray_row)
     }
 }

@@ -263,6 +263,7 @@ impl Rain {
         let eye = view.camera.eye.as_dvec3();
         self.pool.begin_frame();
         let frame = RenderFrame::new(&self.scene, &view.camera, size, 1, 0, 0)?;
+        let frame = frame.with_ray_spacing(self.settings.ray_spacing);
         let lighting_on_gpu = self.scene_on_gpu.lighting_of(&self.pool, &frame, &self.scene)?;
         let [_, nodes, triangles, corners, table, texels] = &lighting_on_gpu.buffers;
         let bounds = self.scene.nodes.first().filter(|_| self.has_obstacles);

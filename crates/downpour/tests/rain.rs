@@ -492,6 +492,36 @@ fn drops_splash_on_obstacles_and_droplets_rebound() {
 }
 
 #[test]
+fn few_pixels_find_the_light_of_lamps_for_all() {
+    let Some(gpu) = device() else { return };
+    let host = Host::new(&gpu, SIZE, wgpu::TextureFormat::Rgba16Float);
+    let lamp = |x: f32, y: f32, z: f32| LightSource::Point {
+        radius: 0.0,
+        position: Vec3::new(x, y, z),
+        intensity: Vec3::splat(2.0e4),
+        range: 0.0,
+    };
+    let lamps = [lamp(1.0, 3.0, -8.0), lamp(-6.0, 5.0, -30.0)];
+    let drawn = |ray_spacing| {
+        let settings = RainSettings { ray_spacing, ..settings() };
+        let mut rain = Rain::new(gpu.device(), gpu.queue(), settings).unwrap();
+        host.rain(&mut rain, &view(), f32::INFINITY, &lamps).unwrap()
+    };
+    let all = drawn(1);
+    let dark = {
+        let mut rain = Rain::new(gpu.device(), gpu.queue(), settings()).unwrap();
+        mean(&host.rain(&mut rain, &view(), f32::INFINITY, &[]).unwrap())
+    };
+    assert!(mean(&all) > 1.05 * dark, "{} {dark}", mean(&all));
+    for spacing in [2, 4] {
+        let few = drawn(spacing);
+        assert!(few != all, "{spacing}");
+        let part = (mean(&few) - dark) / (mean(&all) - dark);
+        assert!((part - 1.0).abs() < 0.01, "{spacing}: {part}");
+    }
+}
+
+#[test]
 fn bad_input_is_an_error_and_leaves_the_rain_as_it_was() {
     let Some(gpu) = device() else { return };
     let refused =
@@ -502,6 +532,10 @@ fn bad_input_is_an_error_and_leaves_the_rain_as_it_was() {
     );
     assert!(refused(RainSettings { rate_mm_h: f64::NAN, ..settings() }).contains("rain rate is NaN"));
     assert!(refused(RainSettings { max_drops: 0, ..settings() }).contains("most drops is 0"));
+    assert_eq!(
+        refused(RainSettings { ray_spacing: 5, ..settings() }),
+        "spacing of rays is 5; allowed: 1 to 4"
+    );
     let mut rain = Rain::new(gpu.device(), gpu.queue(), settings()).unwrap();
     let host = Host::new(&gpu, SIZE, wgpu::TextureFormat::Rgba16Float);
     let first = host.rain(&mut rain, &view(), 6.0, &[]).unwrap();

@@ -68,7 +68,7 @@ shared_constants! {
         /// Number of the lattice of a pixel's ray to a lamp.
         MEDIUM_LATTICE: u32 = 4096;
         /// Least weight of the pixels around a pixel that look for light for it, of 1.
-        MEDIUM_SPREAD_LEAST: f32 = 0.5;
+        MEDIUM_SPREAD_MIN: f32 = 0.5;
         /// Distance from a lamp, in cells of such pixels, from which they do so.
         MEDIUM_SPREAD_CELLS: f32 = 2.5;
         /// Dimension of the random numbers of the grid.

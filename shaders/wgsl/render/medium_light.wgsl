@@ -184,7 +184,7 @@ fn medium_light_is_spared(x: u32, y: u32, direction: vec3f) -> bool {
         alike += f32(corner.y) * medium_spread_alike(own, medium_clean[corner.x].w);
     }
     let whole = f32(render_frame.ray_spacing * render_frame.ray_spacing);
-    return alike >= MEDIUM_SPREAD_LEAST * whole && medium_spread_is_even(direction);
+    return alike >= MEDIUM_SPREAD_MIN * whole && medium_spread_is_even(direction);
 }
 
 // Light and optical depth of the unresolved drops before a pixel; light below 0: that of the pixels around it.

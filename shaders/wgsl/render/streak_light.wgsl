@@ -240,8 +240,9 @@ fn streak_light_points(ray: StreakPatch, later: f32, span: f32, lamp: vec3f, rea
 
 // Light of a lamp with an irradiance of 1 in the fine columns of a ray's cell, as parts of the light of a chord: the mean over the
 // points of its patch, of which those that see the lamp's disk show its radiance. `width`: of the patch, across, along and in time; `spot`:
-// radius of a spot that some of its points meet; `reach`: the chord from the middle to the edge of the disk; `span`: rays between two rows of the profile; `shift` tells the points of a patch from its neighbors'. A point stands for the
-// part of the outline's area around it; what is looked up between fine columns then has the light of the points.
+// radius of a spot that some of its points meet; `reach`: the chord from the middle to the edge of the disk; `span`: rays between two
+// rows of the profile; `shift` tells the points of a patch from its neighbors'. A point stands for the part of the outline's area
+// around it; what is looked up between fine columns then has the light of the points.
 fn streak_light_spot(
     ray: StreakPatch,
     later: f32,

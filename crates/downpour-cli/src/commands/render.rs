@@ -77,7 +77,8 @@ pub(crate) struct RenderArguments {
     #[arg(long, value_name = "N", default_value = "1", value_parser = quantity::sky_rays)]
     #[arg(allow_hyphen_values = true)]
     sky_rays: u32,
-    /// Pixels between those whose rays look for the light of sky and surfaces, and of lamps on unresolved rain, 1 to 4: more are faster, with more noise.
+    /// Pixels between those whose rays look for the light of sky and surfaces, and of lamps on unresolved rain, 1 to 4: more are
+    /// faster, with more noise.
     #[arg(long, value_name = "N", default_value = "1", value_parser = quantity::ray_spacing)]
     #[arg(allow_hyphen_values = true)]
     ray_spacing: u32,

@@ -64,12 +64,13 @@ impl Filter<'_> {
         let rays = self.light.lighting.ray_spacing();
         let [width, height] = self.light.camera.size();
         let index = (y * width + x) as usize;
-        let apart = if all { 1 } else { rays.spacing };
+        let apart = if all { 1 } else { rays.spacing() };
+        let [first_column, first_row] = rays.place();
         // Where fewer look, they are looked for farther away.
         let reach = SKYLIGHT_RADIUS + 2 * (apart - 1);
         let mut sum = Rows::default();
-        for row in window(y, apart, reach, rays.row, height) {
-            for column in window(x, apart, reach, rays.column, width) {
+        for row in window(y, apart, reach, first_row, height) {
+            for column in window(x, apart, reach, first_column, width) {
                 let other = (row * width + column) as usize;
                 let weight = self.alike(index, other);
                 let found = self.rows(other);

@@ -1,7 +1,7 @@
 //! Light of lamps on the unresolved drops before pixels that do not look for it. Twin of `shaders/wgsl/render/medium_spread.wgsl`, where the
 //! method is described.
 
-use downpour_shaders::render::medium::{MEDIUM_LAMP_REACH, MEDIUM_SPREAD_CELLS, MEDIUM_SPREAD_LEAST};
+use downpour_shaders::render::medium::{MEDIUM_LAMP_REACH, MEDIUM_SPREAD_CELLS, MEDIUM_SPREAD_MIN};
 use glam::Vec3;
 
 use super::light::MediumLight;
@@ -29,15 +29,17 @@ impl MediumLight<'_> {
     pub(super) fn medium_spread_corner(&self, x: u32, y: u32, corner: u32) -> (usize, f32) {
         let rays = self.lighting.ray_spacing();
         let [width, height] = self.camera.size();
-        let column = medium_spread_side(x, width, rays.spacing, rays.column, (corner & 1) == 1);
-        let row = medium_spread_side(y, height, rays.spacing, rays.row, corner >= 2);
+        let [column, row] = rays.place();
+        let column = medium_spread_side(x, width, rays.spacing(), column, (corner & 1) == 1);
+        let row = medium_spread_side(y, height, rays.spacing(), row, corner >= 2);
         let weight = column[1] * row[1];
         (if weight > 0 { (row[0] * width + column[0]) as usize } else { 0 }, weight as f32)
     }
 
     /// True if no lamp is so near a ray that the pixels around it could not stand for it.
     fn medium_spread_is_even(&self, direction: Vec3) -> bool {
-        let cell = MEDIUM_SPREAD_CELLS * self.lighting.ray_spacing().spacing as f32 * self.camera.pixel_angle;
+        let cell =
+            MEDIUM_SPREAD_CELLS * self.lighting.ray_spacing().spacing() as f32 * self.camera.pixel_angle;
         (0..self.lighting.light_count())
             .map(|k| self.lighting.light(k))
             .filter(|lamp| !lamp.is_parallel())
@@ -59,7 +61,7 @@ impl MediumLight<'_> {
         let own = clean[(y * self.camera.width + x) as usize][3];
         let corners = (0..4).map(|k| self.medium_spread_corner(x, y, k));
         let alike: f32 = corners.map(|(at, weight)| weight * medium_spread_alike(own, clean[at][3])).sum();
-        let whole = (rays.spacing * rays.spacing) as f32;
-        alike >= MEDIUM_SPREAD_LEAST * whole && self.medium_spread_is_even(direction)
+        let whole = (rays.spacing() * rays.spacing()) as f32;
+        alike >= MEDIUM_SPREAD_MIN * whole && self.medium_spread_is_even(direction)
     }
 }
