@@ -96,19 +96,25 @@ pub(crate) fn describe(adapter: &wgpu::Adapter) -> AdapterDescription {
     AdapterDescription::new(&adapter.get_info(), adapter.features(), &adapter.limits())
 }
 
+/// Place of an adapter in the order of preference, by its kind: the lower, the better.
+#[must_use]
+pub fn preference(adapter: &wgpu::Adapter) -> u8 {
+    match adapter.get_info().device_type {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    }
+}
+
 /// All adapters in order of preference; equal ones keep the order of the system.
 pub(crate) fn enumerate() -> Vec<wgpu::Adapter> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = BACKENDS;
     let instance = wgpu::Instance::new(descriptor);
     let mut adapters = pollster::block_on(instance.enumerate_adapters(BACKENDS));
-    adapters.sort_by_key(|adapter| match adapter.get_info().device_type {
-        wgpu::DeviceType::DiscreteGpu => 0,
-        wgpu::DeviceType::IntegratedGpu => 1,
-        wgpu::DeviceType::VirtualGpu => 2,
-        wgpu::DeviceType::Other => 3,
-        wgpu::DeviceType::Cpu => 4,
-    });
+    adapters.sort_by_key(preference);
     adapters
 }
 

@@ -58,6 +58,6 @@ pub fn spacing_first(at: u32, apart: u32, reach: u32, place: u32) -> u32 {
 }
 
 /// The columns (or rows) of that window, below `size`.
-pub(crate) fn window(at: u32, apart: u32, reach: u32, place: u32, size: u32) -> impl Iterator<Item = u32> {
+pub fn window(at: u32, apart: u32, reach: u32, place: u32, size: u32) -> impl Iterator<Item = u32> {
     (spacing_first(at, apart, reach, place)..=(at + reach).min(size - 1)).step_by(apart as usize)
 }

@@ -13,7 +13,7 @@
 //! [`RenderFrame::ray_spacing`]: crate::data::RenderFrame::ray_spacing
 
 use downpour_math::color::color_luminance;
-use downpour_render::spacing::spacing_first;
+use downpour_render::spacing::window;
 use downpour_shaders::render::scene::{
     SKYLIGHT_FILM, SKYLIGHT_FILM_EDGE, SKYLIGHT_GUESSED, SKYLIGHT_LOBE, SKYLIGHT_LOOSE,
     SKYLIGHT_LOOSE_ROUGHNESS, SKYLIGHT_NOISE, SKYLIGHT_PASSES, SKYLIGHT_RADIUS, SKYLIGHT_STEP,
@@ -167,12 +167,8 @@ impl Pixels<'_> {
             if weight > 0.0 {
                 break;
             }
-            let around = |at: u32, place: u32, size: u32| {
-                let first = spacing_first(at, apart, SKYLIGHT_RADIUS, place);
-                (first..=(at + SKYLIGHT_RADIUS).min(size - 1)).step_by(apart as usize)
-            };
-            for row in around(y, *ray_row, camera.height) {
-                for column in around(x, *ray_column, camera.width) {
+            for row in window(y, apart, SKYLIGHT_RADIUS, *ray_row, camera.height) {
+                for column in window(x, apart, SKYLIGHT_RADIUS, *ray_column, camera.width) {
                     let other = index(column, row);
                     let mut counts =
                         skylight_hat(x, column) * skylight_hat(y, row) * self.slots[other][slot].weight;

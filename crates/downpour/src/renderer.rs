@@ -53,7 +53,8 @@ pub struct RendererOptions {
     /// Rays to the sky per sample, 0 to 64; with 0 nothing hides the sky.
     pub sky_rays: u32,
     /// Distance in pixels between those whose rays look for the light of sky and surfaces, and of lamps on unresolved rain, which
-    /// the pixels between take from them: 1 to 4; 1: all do. Fewer rays are faster and leave more noise. Of a plate that is kept it is the first frame's.
+    /// the pixels between take from them: 1 to 4; 1: all do. Fewer rays are faster and leave more noise. Of a plate that is kept it is
+    /// the first frame's.
     pub ray_spacing: u32,
     /// Refraction of drops; `None` takes the weather's.
     pub refraction: Option<RefractionForm>,

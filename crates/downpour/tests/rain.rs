@@ -502,16 +502,13 @@ fn few_pixels_find_the_light_of_lamps_for_all() {
         range: 0.0,
     };
     let lamps = [lamp(1.0, 3.0, -8.0), lamp(-6.0, 5.0, -30.0)];
-    let drawn = |ray_spacing| {
-        let settings = RainSettings { ray_spacing, ..settings() };
-        let mut rain = Rain::new(gpu.device(), gpu.queue(), settings).unwrap();
+    let mut rain = Rain::new(gpu.device(), gpu.queue(), settings()).unwrap();
+    let dark = mean(&host.rain(&mut rain, &view(), f32::INFINITY, &[]).unwrap());
+    let mut drawn = |ray_spacing| {
+        rain.set_settings(RainSettings { ray_spacing, ..settings() }).unwrap();
         host.rain(&mut rain, &view(), f32::INFINITY, &lamps).unwrap()
     };
     let all = drawn(1);
-    let dark = {
-        let mut rain = Rain::new(gpu.device(), gpu.queue(), settings()).unwrap();
-        mean(&host.rain(&mut rain, &view(), f32::INFINITY, &[]).unwrap())
-    };
     assert!(mean(&all) > 1.05 * dark, "{} {dark}", mean(&all));
     for spacing in [2, 4] {
         let few = drawn(spacing);

@@ -15,11 +15,16 @@ struct MediumRows {
     seen: vec4f,
 }
 
-// What was found before a pixel: its two rows, or those of the pixels around it that have looked for it.
+// What was found before a pixel.
+fn medium_filter_rows(index: u32) -> MediumRows {
+    let at = medium_frame.columns * medium_frame.rows * MEDIUM_SLICES + 2u * index;
+    return MediumRows(medium_filter_found[at], medium_filter_found[at + 1u]);
+}
+
+// What was found before a pixel, or by the pixels around it that have looked for it.
 fn medium_filter_own(x: u32, y: u32) -> MediumRows {
-    let first = medium_frame.columns * medium_frame.rows * MEDIUM_SLICES;
     let index = y * render_frame.camera.width + x;
-    let own = MediumRows(medium_filter_found[first + 2u * index], medium_filter_found[first + 2u * index + 1u]);
+    let own = medium_filter_rows(index);
     if own.whole.x >= 0.0 {
         return own;
     }
@@ -30,8 +35,8 @@ fn medium_filter_own(x: u32, y: u32) -> MediumRows {
         let alike = medium_spread_alike(medium_filter_clean[index].w, medium_filter_clean[corner.x].w);
         let weight = f32(corner.y) * alike;
         if weight > 0.0 {
-            let at = first + 2u * corner.x;
-            light += vec4f(medium_filter_found[at].rgb, medium_filter_found[at + 1u].w) * weight;
+            let rows = medium_filter_rows(corner.x);
+            light += vec4f(rows.whole.rgb, rows.seen.w) * weight;
             weights += weight;
         }
     }
@@ -41,7 +46,6 @@ fn medium_filter_own(x: u32, y: u32) -> MediumRows {
 
 // Of the pixels of a window around a pixel that look for light, or of all: the part of their light that was seen.
 fn medium_filter_seen(x: u32, y: u32, all: bool) -> MediumRows {
-    let first = medium_frame.columns * medium_frame.rows * MEDIUM_SLICES;
     let width = render_frame.camera.width;
     let index = y * width + x;
     let apart = select(render_frame.ray_spacing, 1u, all);
@@ -53,10 +57,10 @@ fn medium_filter_seen(x: u32, y: u32, all: bool) -> MediumRows {
         for (var column = left; column <= min(x + reach, width - 1u); column += apart) {
             let other = row * width + column;
             let weight = medium_spread_alike(medium_filter_clean[index].w, medium_filter_clean[other].w);
-            let whole = medium_filter_found[first + 2u * other];
-            if weight > 0.0 && whole.x >= 0.0 {
-                sum.whole += vec4f(whole.rgb, 1.0) * weight;
-                sum.seen += medium_filter_found[first + 2u * other + 1u] * weight;
+            let rows = medium_filter_rows(other);
+            if weight > 0.0 && rows.whole.x >= 0.0 {
+                sum.whole += vec4f(rows.whole.rgb, 1.0) * weight;
+                sum.seen += rows.seen * weight;
             }
         }
     }

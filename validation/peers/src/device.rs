@@ -1,6 +1,6 @@
 //! Device that everything is timed on.
 
-use downpour::gpu::adapter::BACKENDS;
+use downpour::gpu::adapter::{BACKENDS, preference};
 use downpour::gpu::wgpu;
 
 /// A device with its queue, adapter and instance: Bevy takes all four.
@@ -57,13 +57,7 @@ impl Device {
 
 fn choose(instance: &wgpu::Instance, wanted: Option<&str>) -> Result<wgpu::Adapter, String> {
     let mut adapters = pollster::block_on(instance.enumerate_adapters(BACKENDS));
-    adapters.sort_by_key(|adapter| match adapter.get_info().device_type {
-        wgpu::DeviceType::DiscreteGpu => 0,
-        wgpu::DeviceType::IntegratedGpu => 1,
-        wgpu::DeviceType::VirtualGpu => 2,
-        wgpu::DeviceType::Other => 3,
-        wgpu::DeviceType::Cpu => 4,
-    });
+    adapters.sort_by_key(preference);
     let named = |adapter: &wgpu::Adapter| {
         let wgpu::AdapterInfo { name, driver, .. } = adapter.get_info();
         format!("\"{name}\" ({driver})")

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use downpour::gpu::wgpu;
-use downpour::math::ops;
+use downpour::render::tone::tone_srgb;
 use half::f16;
 
 use crate::SIZE;
@@ -64,21 +64,11 @@ pub(crate) fn read(device: &Device, texture: &wgpu::Texture) -> Result<Picture, 
         image::Rgba(match is_float {
             true => std::array::from_fn(|k| {
                 let linear = f16::from_le_bytes([bytes[at + 2 * k], bytes[at + 2 * k + 1]]).to_f32();
-                if k == 3 { 255 } else { srgb(linear) }
+                if k == 3 { 255 } else { tone_srgb(linear) }
             }),
             false => std::array::from_fn(|k| if k == 3 { 255 } else { bytes[at + k] }),
         })
     })))
-}
-
-/// Converts linear light to 8-bit sRGB.
-fn srgb(linear: f32) -> u8 {
-    let clamped = linear.clamp(0.0, 1.0);
-    let coded = match clamped <= 0.003_130_8 {
-        true => 12.92 * clamped,
-        false => 1.055 * ops::pow(clamped, 1.0 / 2.4) - 0.055,
-    };
-    (coded * 255.0 + 0.5) as u8
 }
 
 /// Saves the last picture of each entry as `DROPS-NUMBER.png`.

@@ -28,7 +28,8 @@ pub(super) struct Filter<'a> {
 }
 
 impl Filter<'_> {
-    fn rows(&self, index: usize) -> Rows {
+    /// What was found before a pixel.
+    fn medium_filter_rows(&self, index: usize) -> Rows {
         let at = self.light.grid_rows() + 2 * index;
         Rows { whole: self.found[at].into(), seen: self.found[at + 1].into() }
     }
@@ -38,10 +39,10 @@ impl Filter<'_> {
         medium_spread_alike(self.clean[index][3], self.clean[other][3])
     }
 
-    /// What was found before a pixel: its two rows, or those of the pixels around it that have looked for it.
+    /// What was found before a pixel, or by the pixels around it that have looked for it.
     fn medium_filter_own(&self, x: u32, y: u32) -> Rows {
         let index = (y * self.light.camera.width + x) as usize;
-        let own = self.rows(index);
+        let own = self.medium_filter_rows(index);
         if own.whole.x >= 0.0 {
             return own;
         }
@@ -50,7 +51,7 @@ impl Filter<'_> {
             let (other, weight) = self.light.medium_spread_corner(x, y, corner);
             let weight = weight * self.alike(index, other);
             if weight > 0.0 {
-                let rows = self.rows(other);
+                let rows = self.medium_filter_rows(other);
                 light += rows.whole.truncate().extend(rows.seen.w) * weight;
                 weights += weight;
             }
@@ -73,7 +74,7 @@ impl Filter<'_> {
             for column in window(x, apart, reach, first_column, width) {
                 let other = (row * width + column) as usize;
                 let weight = self.alike(index, other);
-                let found = self.rows(other);
+                let found = self.medium_filter_rows(other);
                 if weight > 0.0 && found.whole.x >= 0.0 {
                     sum.whole += found.whole.truncate().extend(1.0) * weight;
                     sum.seen += found.seen * weight;
