@@ -104,7 +104,7 @@ fn hosts() -> Vec<Host> {
         host!(DropsFrame as "DropsFrame" in &render::rain::DROPS_FRAME,
             camera, capture_right, capture_size, capture_up, capture_last,
             capture_forward, capture_texel, form, mask_size, known, light_terms, streak_samples,
-            streak_color, glints, atlas),
+            streak_color, glints, atlas, visibility, unused_a, unused_b, unused_c),
         host!(EyeDrop as "EyeDrop" in &sim::field::EYE_DROP,
             offset, diameter, velocity, id, present, speed, id_low),
         host!(FieldClass as "FieldClass" in &sim::field::FIELD,

@@ -8,8 +8,7 @@ use crate::RenderError;
 /// Allowed number of pixels along an edge of a picture.
 pub const PIXELS: std::ops::RangeInclusive<u32> = 1..=16384;
 
-/// Maximum exposure time, s.
-pub const MAX_EXPOSURE_S: f64 = 1.0;
+pub use downpour_weather::MAX_EXPOSURE_S;
 
 /// Motion of the eye at mid-exposure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -150,6 +150,8 @@ pub struct RainOptions {
     pub exposure: Exposure,
     /// Options of the light of lamps and the sun on drops.
     pub light: DropLightOptions,
+    /// Multiple of the light that a drop takes out and gives, as in [`MediumOptions`]: 1 is what physics gives.
+    pub visibility: f64,
 }
 
 impl Default for RainOptions {
@@ -162,6 +164,7 @@ impl Default for RainOptions {
             medium: RainMedium::default(),
             exposure: Exposure::default(),
             light: DropLightOptions { glints: GLINTS, ..DropLightOptions::default() },
+            visibility: 1.0,
         }
     }
 }

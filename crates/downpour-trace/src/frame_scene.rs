@@ -70,7 +70,7 @@ pub struct FrameScene {
     pub origin: DVec3,
     /// Motion of the eye.
     pub motion: EyeMotion,
-    /// Exposure time, s.
+    /// Time for which drops move, s.
     pub shutter_s: f64,
     /// Columns and rows of the picture.
     pub size: [u32; 2],
@@ -136,7 +136,7 @@ impl FrameScene {
             viewpoint,
             origin,
             motion: motion(weather, loaded, time_s),
-            shutter_s: weather.camera.shutter,
+            shutter_s: weather.drop_exposure_s(time_s),
             size: weather.size,
             exposure_ev: weather.camera.exposure_ev as f32,
             depth: depth(weather, seen.as_ref()),
@@ -155,7 +155,7 @@ impl FrameScene {
     /// [`FrameSceneError::TooFar`] over 1 km from what the buffers are relative to; as [`Viewpoint::axes`].
     pub fn seen_at(&self, weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, FrameSceneError> {
         let Some(seen) = CameraView::of(weather, loaded, &posed(loaded, time_s), time_s) else {
-            let mut frame_scene = self.clone();
+            let mut frame_scene = Self { shutter_s: weather.drop_exposure_s(time_s), ..self.clone() };
             set_fov(&mut frame_scene.viewpoint, weather, time_s);
             light::relight(&mut frame_scene.data, weather, loaded, self.origin, time_s);
             frame_scene.data.set_wetness(SceneWetness::of(weather, time_s, self.origin).as_ref());
@@ -168,7 +168,12 @@ impl FrameScene {
         let mut viewpoint = seen.viewpoint(weather.camera.fov.unwrap_or(seen.fov), self.origin);
         set_fov(&mut viewpoint, weather, time_s);
         viewpoint.axes()?;
-        let mut frame_scene = Self { viewpoint, motion: motion(weather, loaded, time_s), ..self.clone() };
+        let mut frame_scene = Self {
+            viewpoint,
+            motion: motion(weather, loaded, time_s),
+            shutter_s: weather.drop_exposure_s(time_s),
+            ..self.clone()
+        };
         light::relight(&mut frame_scene.data, weather, loaded, self.origin, time_s);
         frame_scene.data.set_wetness(SceneWetness::of(weather, time_s, self.origin).as_ref());
         Ok(frame_scene)
@@ -191,7 +196,7 @@ impl FrameScene {
         check_size(weather.size)?;
         let mut frame_scene = Self {
             size: weather.size,
-            shutter_s: weather.camera.shutter,
+            shutter_s: weather.drop_exposure_s(time_s),
             exposure_ev: weather.camera.exposure_ev as f32,
             ..self.clone()
         };
@@ -238,7 +243,7 @@ impl FrameScene {
         set_fov(&mut viewpoint, weather, time_s);
         let depth = depth(weather, Some(&seen));
         let motion = motion(weather, loaded, time_s);
-        Ok(view_of(&viewpoint, origin, weather.size, depth, weather.camera.shutter, &motion)?)
+        Ok(view_of(&viewpoint, origin, weather.size, depth, weather.drop_exposure_s(time_s), &motion)?)
     }
 
     /// [`FrameScene::view_at`] for a scene that stands still, whose camera may be that of its model: only the field of view changes then.
@@ -256,7 +261,14 @@ impl FrameScene {
         }
         let mut viewpoint = self.viewpoint;
         set_fov(&mut viewpoint, weather, time_s);
-        Ok(view_of(&viewpoint, self.origin, self.size, self.depth, self.shutter_s, &self.motion)?)
+        Ok(view_of(
+            &viewpoint,
+            self.origin,
+            self.size,
+            self.depth,
+            weather.drop_exposure_s(time_s),
+            &self.motion,
+        )?)
     }
 
     /// Returns drops with their positions relative to `origin`.

@@ -123,19 +123,18 @@ impl WetGround {
         self.ripples.advance(time_s)
     }
 
-    /// Finds the rings of single drops for a picture of a scene at a time in seconds: drops of a rain in closed form have some. `None`
-    /// takes away those that are there.
+    /// Finds the rings of single drops of a rain in closed form, for a picture of a scene at a time in seconds.
     ///
     /// # Errors
     /// As [`WetGround::new`]; [`PuddleError::Sim`] for an eye or a time out of range.
     pub fn find_rings(
         &mut self,
-        field: Option<&RainField>,
+        field: &RainField,
         frame_scene: &FrameScene,
         time_s: f64,
     ) -> Result<(), PuddleError> {
         self.shown = None;
-        let (Some(field), Some(heaviest)) = (field, &self.law) else { return Ok(()) };
+        let Some(heaviest) = &self.law else { return Ok(()) };
         if !self.puddles.iter().any(|(_, look)| look.has_rings()) {
             return Ok(());
         }

@@ -8,6 +8,7 @@ use super::glow::GlowTable;
 use super::keys::WeatherKeys;
 use super::lamps::{Lamp, LampTable};
 use super::lightning::{FlashTable, Lightning, LightningTable, MAX_FLASHES};
+use super::look::LookTable;
 use super::models::{Model, ModelTable};
 use super::presets;
 use super::puddle::{self, Puddle, PuddleTable};
@@ -50,6 +51,7 @@ pub(super) struct Tables {
     glass: Option<GlassTable>,
     fog: Option<FogTable>,
     glow: GlowTable,
+    look: LookTable,
     puddle: Vec<PuddleTable>,
     wetness: WetnessTable,
     splashes: SplashesTable,
@@ -94,6 +96,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         let allowed = "false, or a rate without keys";
         return Err(positions.bad("drips.enabled", "drips of a rain whose rate changes", allowed));
     }
+    let (look, look_keys) = tables.look.checked(&positions)?;
     let streaks = tables.streaks.checked(rain.drop_light, &positions)?;
     let drop_model = tables.rain.drop_model(&streaks, &positions)?;
     let default = Weather::default();
@@ -111,6 +114,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         glass: tables.glass.map(|glass| glass.checked(&heaviest, is_still, &positions)).transpose()?,
         fog: tables.fog.map(|fog| fog.checked(&positions)).transpose()?,
         glow: tables.glow.checked(),
+        look,
         rain,
         drop_model,
         sun,
@@ -122,7 +126,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         wind,
         streaks,
         puddles,
-        keys: WeatherKeys::new(rates, camera_keys, sky_keys, sun_keys, lamp_keys, fills),
+        keys: WeatherKeys::new(rates, camera_keys, sky_keys, sun_keys, lamp_keys, fills, look_keys),
         size: tables.output.size.map_or(default.size, |Exactly(size)| size.map(|Whole(side)| side)),
     })
 }

@@ -2,9 +2,10 @@
 
 use super::camera::CameraKeys;
 use super::lamps::LampKeys;
+use super::look::LookKeys;
 use super::rain::most;
 use super::sky::{SkyKeys, SunKeys};
-use super::{PuddleFill, PuddleShape, Rain, Weather, WetnessAt};
+use super::{Look, MAX_EXPOSURE_S, PuddleFill, PuddleShape, Rain, Weather, WetnessAt};
 use downpour_wind::Keyed;
 use std::borrow::Cow;
 
@@ -20,6 +21,7 @@ pub struct WeatherKeys {
     lamps: Vec<(usize, LampKeys)>,
     /// Index of each puddle whose fill changes.
     fills: Vec<(usize, Keyed<f64>)>,
+    look: Option<LookKeys>,
 }
 
 impl WeatherKeys {
@@ -30,6 +32,7 @@ impl WeatherKeys {
         sun: Option<SunKeys>,
         lamps: Vec<LampKeys>,
         fills: Vec<Option<Keyed<f64>>>,
+        look: LookKeys,
     ) -> Self {
         let lamps = lamps.into_iter().enumerate();
         let fills = fills.into_iter().enumerate();
@@ -42,6 +45,7 @@ impl WeatherKeys {
             fills: fills
                 .filter_map(|(i, fill)| Some((i, fill.filter(|fill| fill.keys().len() > 1)?)))
                 .collect(),
+            look: look.moving(),
         }
     }
 
@@ -105,6 +109,7 @@ impl Weather {
         let mut weather = self.clone();
         weather.rain = self.rain_at(time_s);
         weather.camera = weather.camera.at(&self.keys.camera, time_s);
+        weather.look = self.look_at(time_s);
         if let Some(sky) = &self.keys.sky {
             weather.sky = weather.sky.at(sky, time_s);
         }
@@ -124,6 +129,26 @@ impl Weather {
             }
         }
         Cow::Owned(weather)
+    }
+
+    /// Artistic multipliers at a time in seconds.
+    #[must_use]
+    pub fn look_at(&self, time_s: f64) -> Look {
+        self.keys.look.as_ref().map_or(self.look, |keys| self.look.at(keys, time_s))
+    }
+
+    /// Time for which drops move in a picture at a time in seconds, s, at most [`MAX_EXPOSURE_S`]: that of the shutter or of the
+    /// persistence, times the length of streaks.
+    #[must_use]
+    pub fn drop_exposure_s(&self, time_s: f64) -> f64 {
+        (self.camera.shutter * self.look_at(time_s).streak_length).min(MAX_EXPOSURE_S)
+    }
+
+    /// The longest [`Weather::drop_exposure_s`] of any time, s.
+    #[must_use]
+    pub fn longest_drop_exposure_s(&self) -> f64 {
+        let keys = self.keys.look.as_ref().and_then(|keys| keys.streak_length.as_ref());
+        (self.camera.shutter * keys.map_or(self.look.streak_length, most)).min(MAX_EXPOSURE_S)
     }
 
     /// The rain at a time in seconds.

@@ -33,6 +33,7 @@ mod keys;
 mod lamps;
 mod lightning;
 mod load;
+mod look;
 mod models;
 mod pane_map;
 mod presets;
@@ -69,6 +70,7 @@ pub use lightning::{
     Stroke, StrokePulse,
 };
 pub use load::{Loaded, Reloaded, Roots, lamps_at, load};
+pub use look::Look;
 pub use models::{Model, Repeat};
 pub use pane_map::PaneMap;
 pub use presets::PRESETS;
@@ -90,6 +92,9 @@ pub const MAX_FILE: u64 = 4 << 20;
 
 /// Maximum nesting depth of tables and arrays.
 pub const MAX_DEPTH: u32 = 32;
+
+/// Maximum exposure time, s.
+pub const MAX_EXPOSURE_S: f64 = 1.0;
 
 /// Maximum number of entries `[[model]]`.
 pub const MAX_MODELS: usize = 4096;
@@ -159,6 +164,8 @@ pub struct Weather {
     pub fog: Option<Fog>,
     /// Light that goes beside its image.
     pub glow: Glow,
+    /// Artistic multipliers of the rain.
+    pub look: Look,
     /// Water on the ground, in the order of the file.
     pub puddles: Vec<Puddle>,
     /// Wetness of the surfaces.
@@ -192,6 +199,7 @@ impl Default for Weather {
             glass: None,
             fog: None,
             glow: Glow::default(),
+            look: Look::PHYSICAL,
             puddles: Vec::new(),
             wetness: Wetness::default(),
             splashes: Splashes::default(),

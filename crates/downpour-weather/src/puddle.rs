@@ -62,7 +62,7 @@ pub enum PuddleShape {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum PuddleRings {
-    /// The larger drops of the rain in closed form make rings where they fall.
+    /// The larger drops of the rain in closed form, in the uniform part of the wind, make rings where they fall.
     #[default]
     Drops,
     /// All ripples are those of a lattice, as in Tatarchuk & Isidoro 2006.

@@ -55,6 +55,8 @@ ranges! {
     FogHeightM: 0.1, 1e5, "0.1 to 1e5 m";
     FogAsymmetry: 0.0, 0.95, "0 to 0.95";
     GlowWidth: 0.1, 10.0, "0.1 to 10";
+    Visibility: 0.0, 20.0, "0 to 20";
+    StreakLength: 0.0, 20.0, "0 to 20";
     DropSize: 0.05, 1.0, "0.05 to 1";
     ShortS: 0.01, 10.0, "0.01 to 10 s";
     Brightness: 0.0, 1e9, "0 to 1e9";

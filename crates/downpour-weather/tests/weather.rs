@@ -9,7 +9,7 @@ use downpour_drop::distribution::DropSizeLaw;
 use downpour_drop::fall_speed::FallSpeedModel;
 use downpour_scene::{Budget, SceneError};
 use downpour_weather::{
-    Camera, CameraPose, Glow, GlowFilter, Lamp, Observer, Rain, RainBounce, RainCylinder, RainDrag,
+    Camera, CameraPose, Glow, GlowFilter, Lamp, Look, Observer, Rain, RainBounce, RainCylinder, RainDrag,
     RainDropLight, RainVolume, Repeat, Sky, SkySource, SunSource, ToneCurve, ToneEdges, Weather,
 };
 use effort::measured;
@@ -88,6 +88,10 @@ glare = 0.1
 width = 2
 filter = "kawase"
 diffraction = false
+
+[look]
+visibility = 3
+streak_length = 0.5
 
 [[model]]
 file = "models/street.glb"
@@ -228,6 +232,9 @@ fn an_empty_file_is_the_default() {
     assert_eq!((Camera::default().tone, Camera::default().edges), (ToneCurve::Hue, ToneEdges::ToneAware));
     let kawase = Glow { glare: 0.1, width: 2.0, filter: GlowFilter::Kawase, has_diffraction: false };
     assert_eq!((default.glow.glare, parse(ALL).unwrap().glow), (0.01, kawase));
+    let look = Look { visibility: 3.0, streak_length: 0.5 };
+    assert_eq!((default.look, parse(ALL).unwrap().look), (Look::PHYSICAL, look));
+    assert_eq!(parse(ALL).unwrap().drop_exposure_s(0.0), 0.005);
     let all = parse(ALL).unwrap().camera;
     assert_eq!((all.tone, all.edges), (ToneCurve::KhronosNeutral, ToneEdges::Linear));
     let eye = |more: &str| parse(&format!("[camera]\nobserver = 'eye'\n{more}")).unwrap().camera;
@@ -475,7 +482,7 @@ fn t11_keys_are_known_and_stand_once() {
     says(
         "[rian]\nrate_mm_h = 5",
         "line 1, column 2: rian: unknown key \"rian\", perhaps rain; allowed: preset, rain, sky, sun, camera, model, light, \
-         flash, lightning, wind, gusts, turbulence, wind_field, streaks, glass, fog, glow, puddle, wetness, splashes, drips, drip, output",
+         flash, lightning, wind, gusts, turbulence, wind_field, streaks, glass, fog, glow, look, puddle, wetness, splashes, drips, drip, output",
     );
     refused("[camera]\nfov_rad = 1", 2, "unknown key \"fov_rad\", perhaps fov_deg;");
     refused("[camera]\nshutter_s = 1.5", 2, "0 to 1 s");
@@ -499,6 +506,11 @@ fn t11_keys_are_known_and_stand_once() {
     refused("[glow]\nwidth = 0", 2, "0.1 to 10");
     refused("[glow]\nfilter = \"box\"", 2, "glow.filter");
     refused("[glow]\nbloom = 1", 2, "glow.bloom");
+    refused("[look]\nvisibility = -1", 2, "0 to 20");
+    refused("[look]\nvisibility = nan", 2, "look.visibility");
+    refused("[look]\nstreak_length = 21", 2, "look.streak_length");
+    refused("[look]\nstreak_length = [[1, 1], [0, 2]]", 2, "look.streak_length");
+    refused("[look]\nstreaks_length = 2", 2, "perhaps streak_length");
     refused("[camera]\ntone = \"channel\"", 2, "camera.tone");
     refused("[camera]\nedges = \"sharp\"", 2, "camera.edges");
     refused("[camera]\naperture_mm = nan", 2, "camera.aperture_mm");

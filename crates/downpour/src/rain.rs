@@ -343,7 +343,8 @@ impl Rain {
 
     fn view(&self, view: &RainView, size: [u32; 2]) -> Result<View, RainError> {
         let depth = [self.settings.near_m, self.settings.far_m];
-        let seen = view_of(&view.camera, DVec3::ZERO, size, depth, view.shutter_s, &view.motion)?;
+        let shutter_s = view.shutter_s * self.settings.look.streak_length;
+        let seen = view_of(&view.camera, DVec3::ZERO, size, depth, shutter_s, &view.motion)?;
         // Room for a quarter more is kept.
         Ok(View { max_drops: self.settings.max_drops.min(self.most_drops / 5 * 4), ..seen })
     }
@@ -365,7 +366,11 @@ impl Rain {
         match self.medium.filter(|(of, _)| of == resolved) {
             Some((_, medium)) => Ok(medium),
             None => {
-                let options = MediumOptions { grain: MediumGrain::Streaks, ..MediumOptions::default() };
+                let options = MediumOptions {
+                    grain: MediumGrain::Streaks,
+                    visibility: self.settings.look.visibility,
+                    ..MediumOptions::default()
+                };
                 Ok(RainMedium::new(&self.sizes, resolved, &self.masks, &options)?)
             }
         }
@@ -378,6 +383,7 @@ impl Rain {
             medium: medium.with_velocity(velocity.as_vec3()),
             exposure: Exposure {
                 shutter_s: view.shutter_s,
+                streak_length: settings.look.streak_length,
                 time_s: view.time_s,
                 eye: view.motion,
                 oscillation: Amplitudes::GARG_NAYAR_EVEN,
@@ -385,6 +391,7 @@ impl Rain {
                 seed: settings.seed,
                 ..Exposure::default()
             },
+            visibility: settings.look.visibility,
             ..RainOptions::default()
         }
     }

@@ -420,11 +420,11 @@ impl Renderer {
             return Ok(frame_scene);
         }
         told(Progress { what: "rain on puddles and glass", parts: [0; 2] });
-        let field = self.shower.closed_form();
+        let field = Arc::clone(self.shower.on_water());
         let water = self.water_at(time_s)?;
         if let Some(ground) = &mut water.ground {
             ground.advance(time_s)?;
-            ground.find_rings(field.as_deref(), &frame_scene, time_s)?;
+            ground.find_rings(&field, &frame_scene, time_s)?;
         }
         if let Some(pane) = &mut water.pane {
             rain_on(pane, time_s, told)?;
@@ -477,6 +477,7 @@ impl Renderer {
                 medium,
                 exposure: Exposure::of_weather(&self.weather.at(time_s), frame_scene.motion, time_s),
                 light: DropLightOptions::of_weather(&self.weather),
+                visibility: self.weather.look_at(time_s).visibility,
                 ..RainOptions::default()
             },
             glow: Glow::of_weather(&self.weather, &medium),

@@ -20,7 +20,7 @@ use downpour_sim::shelter::Obstacles;
 use downpour_sim::simulation::Bounce;
 use downpour_sim::view::View;
 use downpour_weather::{Rain, RainDrag, RainExtinction, RainUnresolved, RainVolume, Splashes, Weather};
-use downpour_wind::{UniformWind, WindField};
+use downpour_wind::WindField;
 use glam::DVec3;
 
 use downpour_render::glass::pane_plane;
@@ -92,6 +92,8 @@ pub struct Shower {
     splashes: Option<SplashOptions>,
     dripping: Option<Dripping>,
     form: Form,
+    /// The rain in closed form, in the uniform wind: that of the drops, unless they go step by step.
+    on_water: Arc<RainField>,
     /// The last medium of a rain that does not change.
     last: Arc<Mutex<Option<LastMedium>>>,
 }
@@ -117,17 +119,32 @@ impl Shower {
         let law = rain.sizes()?;
         // The papers' drag has no closed form.
         let relaxes = rain.drag == RainDrag::Relaxation;
-        let form = match (rain.volume, weather.wind.uniform()) {
-            (RainVolume::Auto, Some(wind)) if relaxes => closed(&law, weather, wind)?,
+        let is_closed = match (rain.volume, weather.wind.uniform()) {
+            (RainVolume::Auto, Some(_)) if relaxes => true,
             (RainVolume::ClosedForm, Some(_)) if !relaxes => return Err(ShowerError::DragByStep),
-            (RainVolume::ClosedForm, Some(wind)) => closed(&law, weather, wind)?,
+            (RainVolume::ClosedForm, Some(_)) => true,
             (RainVolume::ClosedForm, None) => return Err(ShowerError::NotUniform),
             _ if weather.keys.rate().is_some() => return Err(ShowerError::RateByStep),
-            _ => Form::Stepped(Box::new(Stepped::new(law.clone(), weather))),
+            _ => false,
+        };
+        let on_water = Arc::new(closed(&law, weather)?);
+        let form = if is_closed {
+            Form::Closed(Arc::clone(&on_water))
+        } else {
+            Form::Stepped(Box::new(Stepped::new(law.clone(), weather)))
         };
         let (dripping, splashes) = (Dripping::new(weather)?, splashes(&weather.splashes, &weather.rain.air)?);
         let last = Arc::default();
-        Ok(Self { law, weather: weather.clone(), bounce: bounce(rain), dripping, splashes, form, last })
+        Ok(Self {
+            law,
+            weather: weather.clone(),
+            bounce: bounce(rain),
+            dripping,
+            splashes,
+            form,
+            on_water,
+            last,
+        })
     }
 
     /// Finds where water drips in a scene, which takes a while. Else it is found for the first picture, in the scene of that: of a scene
@@ -192,13 +209,12 @@ impl Shower {
         matches!(self.form, Form::Closed(_))
     }
 
-    /// The rain, if it is in closed form.
+    /// The rain in closed form whose drops make rings on puddles: that of the picture, or of drops that go step by step one of the same
+    /// rate, sizes and seed in the uniform part of their wind. (Drops of a view are followed where the picture shows them; rings
+    /// last longer, and are wanted where the eye has only just turned.)
     #[must_use]
-    pub fn closed_form(&self) -> Option<Arc<RainField>> {
-        match &self.form {
-            Form::Closed(field) => Some(Arc::clone(field)),
-            Form::Stepped(_) => None,
-        }
+    pub fn on_water(&self) -> &Arc<RainField> {
+        &self.on_water
     }
 
     /// True if a picture of any time can be made by itself, and is the same as among others. If not, pictures of a clip are
@@ -395,6 +411,7 @@ impl Shower {
                 RainUnresolved::Even => MediumGrain::Even,
                 _ => MediumGrain::Streaks,
             },
+            visibility: self.weather.look_at(time_s).visibility,
         };
         let with_fog = |medium: RainMedium| medium.with_fog(self.weather.fog.as_ref(), frame_scene.origin.y);
         if self.weather.keys.rate().is_none() {
@@ -485,14 +502,14 @@ pub(crate) fn fall_speed(sizes: &DropSizeDistribution) -> f64 {
     speeds.at(sizes.effective_diameter()).unwrap_or_default()
 }
 
-/// Rain in closed form.
-fn closed(law: &DropSizeDistribution, weather: &Weather, wind: UniformWind) -> Result<Form, ShowerError> {
+/// The rain of a weather in closed form, in the uniform part of its wind.
+fn closed(law: &DropSizeDistribution, weather: &Weather) -> Result<RainField, SimError> {
     let rain = &weather.rain;
     let field = match weather.keys.rate() {
         Some(rates) => RainField::changing(law, rates, rain.rate_height_m, rain.seed)?,
         None => RainField::new(law, rain.seed)?,
     };
-    Ok(Form::Closed(Arc::new(field.with_wind(wind))))
+    Ok(field.with_wind(weather.wind.air().clone()))
 }
 
 /// Splashes in an air, if drops splash.

@@ -126,6 +126,24 @@ fn a_plate_is_not_kept_over_water_that_moves() {
     assert!(plate(&frames[1]) == plate(&frames[2]) && plate(&frames[2]) != plate(&frames[3]));
 }
 
+/// Drops that go step by step make rings as those in closed form do: in a uniform wind the same rings.
+#[test]
+fn rain_step_by_step_has_rings() {
+    let folder = folder();
+    let weather = |volume: &str| {
+        let rate = WEATHER.lines().find(|line| line.starts_with("rate_mm_h")).unwrap();
+        let steady = WEATHER.replace(rate, &format!("rate_mm_h = 60\nvolume = '{volume}'"));
+        // Pixels finer than the waves.
+        let steady = steady.replace("fov_deg = 30", "fov_deg = 6");
+        format!("{steady}[[wind]]\nuniform = {{ speed_m_s = 2, towards_deg = 80 }}\n")
+    };
+    let [closed, stepped] = ["closed-form", "view"].map(|volume| {
+        std::fs::write(folder.path().join("a.toml"), weather(volume)).unwrap();
+        opened(&folder, Device::cpu(), 0).frame(0.2).unwrap()
+    });
+    assert!(plate(&closed) == plate(&stepped));
+}
+
 /// A device of the adapter of another one, whose storage buffers hold so many bytes.
 fn with_room(gpu: &Gpu, bytes: u64) -> Gpu {
     let instance = wgpu::Instance::default();

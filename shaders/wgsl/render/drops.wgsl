@@ -247,6 +247,12 @@ fn drops_depth(drop: ScreenDrop, x: u32, y: u32) -> f32 {
     return drop.distance * streak_depth(drop.depth_ratio, streak_time(drop.depth_ratio, way));
 }
 
+// The light of a drop over a pixel with another visibility: it takes out that multiple of the light behind it, at most all of it, and
+// gives the same multiple of its own.
+fn drops_visible(shown: vec4f, visibility: f32) -> vec4f {
+    return shown * min(visibility, 1.0 / max(shown.w, 1.0e-6));
+}
+
 // A drop over a pixel whose scene is `scene` meters away: radiance times coverage, and coverage.
 fn drops_pixel(index: u32, x: u32, y: u32, scene: f32) -> vec4f {
     let drop = drops_list[index];
@@ -262,7 +268,8 @@ fn drops_pixel(index: u32, x: u32, y: u32, scene: f32) -> vec4f {
     if drops_frame.streak_color == STREAK_WHITE {
         shown = vec4f(drops_capture_texel(drops_frame.capture_last, 0, 0) * shown.w, shown.w);
     }
-    return shown * drops_before(drop, scene, drops_depth(drop, x, y));
+    let seen = shown * drops_before(drop, scene, drops_depth(drop, x, y));
+    return drops_visible(seen, drops_frame.visibility);
 }
 
 // Mean radiance of an unresolved drop before a pixel.

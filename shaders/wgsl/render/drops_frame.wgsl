@@ -29,6 +29,11 @@ struct DropsFrame {
     glints: u32,
     // First word of the atlas behind the masks; 0: there is none.
     atlas: u32,
+    // Multiple of the light that a drop takes out and gives: 1 is what physics gives.
+    visibility: f32,
+    unused_a: u32,
+    unused_b: u32,
+    unused_c: u32,
 }
 
 @group(0) @binding(0) var<uniform> drops_frame: DropsFrame;

@@ -854,6 +854,11 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             let exposure = exposure(1.0 / 60.0, StreakSamples::Table);
             rain_case(gpu, LEVEL, RefractionForm::Direction, exposure, Part::Drops)
         }),
+        drops("main_drops: streaks that are more visible", |gpu| {
+            let exposure = Exposure { streak_length: 0.5, ..exposure(1.0 / 60.0, StreakSamples::Table) };
+            let options = RainOptions { exposure, visibility: 3.0, ..RainOptions::default() };
+            masks_case(gpu, LEVEL, options, &DropMasks::trace(1.333).expect("masks"), Part::Drops)
+        }),
         drops("main_drops: streaks that fade, by the table", |gpu| {
             let response = TemporalResponse::Fading;
             let exposure = Exposure { response, ..exposure(0.075, StreakSamples::Table) };

@@ -67,6 +67,13 @@ pub(super) fn drops_depth(camera: &Camera, drop: &ScreenDrop, x: u32, y: u32) ->
     drop.distance * streak_depth(drop.depth_ratio, streak_time(drop.depth_ratio, way))
 }
 
+/// The light of a drop over a pixel (radiance times coverage, and coverage) with another visibility, at least 0: it takes out that
+/// multiple of the light behind it, at most all of it, and gives the same multiple of its own.
+#[must_use]
+pub fn drops_visible(shown: Vec4, visibility: f32) -> Vec4 {
+    shown * visibility.min(1.0 / shown.w.max(1.0e-6))
+}
+
 /// The part of a drop at a depth that is before a scene, 0 to 1: one that meets a surface goes into it over its own size; a splash
 /// stands on one, which hides it only from behind.
 pub(super) fn drops_before(drop: &ScreenDrop, scene: f32, depth: f32) -> f32 {
@@ -331,7 +338,8 @@ impl Buffers<'_> {
             let white = self.view.drops_capture_texel(self.view.frame.capture_last, 0, 0);
             shown = (white * shown.w).extend(shown.w);
         }
-        shown * drops_before(drop, scene, drops_depth(&self.view.frame.camera, drop, x, y))
+        let seen = shown * drops_before(drop, scene, drops_depth(&self.view.frame.camera, drop, x, y));
+        drops_visible(seen, self.view.frame.visibility)
     }
 
     /// Mean radiance of an unresolved drop before a pixel.

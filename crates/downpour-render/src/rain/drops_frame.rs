@@ -43,6 +43,14 @@ pub struct DropsFrame {
     pub glints: u32,
     /// First word of the atlas behind the masks; 0: no atlas.
     pub atlas: u32,
+    /// Multiple of the light that a drop takes out and gives.
+    pub visibility: f32,
+    /// 0.
+    pub unused_a: u32,
+    /// 0.
+    pub unused_b: u32,
+    /// 0.
+    pub unused_c: u32,
 }
 
 /// Data that the drops' kernels read besides the drops.
@@ -80,6 +88,10 @@ impl DropsFrame {
             streak_color: options.exposure.color as u32,
             glints: options.light.glints,
             atlas: if options.light.form == DropLightForm::Atlas { masks.atlas } else { 0 },
+            visibility: options.visibility as f32,
+            unused_a: 0,
+            unused_b: 0,
+            unused_c: 0,
         }
     }
 }

@@ -4,7 +4,7 @@ use downpour_drop::oscillation::{Amplitudes, Fluids};
 use downpour_shaders::render::rain::{STREAK_REFRACTED, STREAK_WHITE};
 use downpour_weather::{Observer, StreakLook, Weather};
 
-use crate::camera::EyeMotion;
+use crate::camera::{EyeMotion, MAX_EXPOSURE_S};
 
 /// Maximum number of samples along the chord of a streak.
 pub const MAX_STREAK_SAMPLES: u32 = 4096;
@@ -57,9 +57,11 @@ impl TemporalResponse {
 /// Exposure of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exposure {
-    /// Exposure time, s, 0 (drops stand still) to [`MAX_EXPOSURE_S`](crate::camera::MAX_EXPOSURE_S); half of it is before
+    /// Exposure time, s, 0 (drops stand still) to [`MAX_EXPOSURE_S`]; half of it is before
     /// the time of the picture.
     pub shutter_s: f64,
+    /// Multiple of that time for which drops move: 1 is what physics gives, more has longer and fainter streaks.
+    pub streak_length: f64,
     /// Weight of light over the exposure.
     pub response: TemporalResponse,
     /// Time of the picture, s: the phases of the drops' oscillation count from time 0.
@@ -83,6 +85,12 @@ pub struct Exposure {
 }
 
 impl Exposure {
+    /// Time for which drops move, s, at most [`MAX_EXPOSURE_S`].
+    #[must_use]
+    pub fn drops_s(&self) -> f64 {
+        (self.shutter_s * self.streak_length).clamp(0.0, MAX_EXPOSURE_S)
+    }
+
     /// Returns the exposure of a weather, for a picture at `time_s` with a moving eye.
     #[must_use]
     pub fn of_weather(weather: &Weather, eye: EyeMotion, time_s: f64) -> Self {
@@ -90,6 +98,7 @@ impl Exposure {
         let [a20, a31] = streaks.oscillation;
         Self {
             shutter_s: camera.shutter,
+            streak_length: weather.look.streak_length,
             response: match camera.observer {
                 Observer::Camera => TemporalResponse::Shutter,
                 Observer::Eye => TemporalResponse::Fading,
@@ -116,6 +125,7 @@ impl Default for Exposure {
     fn default() -> Self {
         Self {
             shutter_s: 0.0,
+            streak_length: 1.0,
             response: TemporalResponse::default(),
             time_s: 0.0,
             eye: EyeMotion::default(),

@@ -75,6 +75,8 @@ pub struct MediumOptions {
     pub pane: Option<PanePlane>,
     /// Look of the drops.
     pub grain: MediumGrain,
+    /// Multiple of the light that a drop takes out and gives: 1 is what physics gives.
+    pub visibility: f64,
 }
 
 impl Default for MediumOptions {
@@ -86,6 +88,7 @@ impl Default for MediumOptions {
             origin: DVec3::ZERO,
             pane: None,
             grain: MediumGrain::Even,
+            visibility: 1.0,
         }
     }
 }
@@ -131,7 +134,7 @@ impl RainMedium {
         masks: &DropMasks,
         options: &MediumOptions,
     ) -> Result<Self, DropError> {
-        if rain.rate_mm_h() <= 0.0 {
+        if rain.rate_mm_h() <= 0.0 || options.visibility <= 0.0 {
             return Ok(Self::default());
         }
         let mut depths = [0.0f64; ENTRIES];
@@ -154,7 +157,8 @@ impl RainMedium {
             }
             let part = rain.restricted_to(lower, upper)?;
             let diameter = (lower * upper).sqrt();
-            let level = part.cross_section() * masks.outline(diameter as f32, 0.0);
+            let shown = part.cross_section() * options.visibility;
+            let level = shown * masks.outline(diameter as f32, 0.0);
             let extinction = options.efficiency.factor() * level;
             // Diffraction, where it is counted, is everywhere; outlines only where drops are not drawn.
             let (near, far) = (resolved.near, resolved.range(diameter));
@@ -162,7 +166,7 @@ impl RainMedium {
             all += extinction;
             diameters += extinction * diameter;
             above += options.efficiency.factor()
-                * part.cross_section()
+                * shown
                 * masks.outline(diameter as f32, std::f32::consts::FRAC_PI_2);
             if far <= 0.0 {
                 rate_mm_h += part.integrated_rate_mm_h();

@@ -21,7 +21,7 @@ use super::glint::drop_glint_right;
 use super::light::DropLightForm;
 use super::streak::ScreenDrop;
 use super::{DropMasks, RainOptions};
-use crate::camera::{Camera, MAX_EXPOSURE_S};
+use crate::camera::Camera;
 
 /// Bits of a diameter between two entries of the frequencies.
 const FREQUENCY_STEP: u32 = 1 << 16;
@@ -76,7 +76,7 @@ impl ProjectFrame {
     #[must_use]
     pub fn new(camera: &Camera, masks: &DropMasks, options: &RainOptions, count: u32) -> Self {
         let exposure = &options.exposure;
-        let shutter = exposure.shutter_s.clamp(0.0, MAX_EXPOSURE_S) as f32;
+        let shutter = exposure.drops_s() as f32;
         let time = DropOscillationTime::from_seconds(exposure.time_s);
         Self {
             camera: *camera,

@@ -5,7 +5,7 @@ use downpour_drop::distribution::DropSizeLaw;
 use downpour_math::{OutOfRange, in_range};
 use downpour_sim::simulation::Bounce;
 use downpour_trace::data::MAX_RAY_SPACING;
-use downpour_weather::Splashes;
+use downpour_weather::{Look, Splashes};
 use downpour_wind::{UniformWind, Wind};
 
 use super::{RainError, RainView};
@@ -36,6 +36,8 @@ pub struct RainSettings {
     pub splashes: Splashes,
     /// Droplets that rebound from obstacles; a fraction of 0: none.
     pub bounce: Bounce,
+    /// Artistic multipliers.
+    pub look: Look,
 }
 
 impl Default for RainSettings {
@@ -54,6 +56,7 @@ impl Default for RainSettings {
             far_m: 50.0,
             splashes: Splashes::default(),
             bounce: Bounce::default(),
+            look: Look::PHYSICAL,
         }
     }
 }
@@ -78,6 +81,8 @@ impl RainSettings {
             "the least distance to 1e5",
         )?;
         in_range("size of splashes", self.splashes.size, "", &(0.1..=10.0), 1.0, "0.1 to 10")?;
+        in_range("visibility of rain", self.look.visibility, "", &(0.0..=20.0), 1.0, "0 to 20")?;
+        in_range("length of streaks", self.look.streak_length, "", &(0.0..=20.0), 1.0, "0 to 20")?;
         let bounce = &self.bounce;
         for (name, value, range, allowed) in [
             ("fraction of impacts that rebound", bounce.fraction, 0.0..=1.0, "0 to 1"),

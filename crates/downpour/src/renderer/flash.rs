@@ -55,8 +55,10 @@ impl Renderer {
             water.lay(&mut frame_scene)?;
         }
         let [begin_s, end_s] = part.lit_s;
-        let later_s = 0.5 * (begin_s + end_s) - time_s;
-        frame_scene.shutter_s = end_s - begin_s;
+        // Streaks that are longer than they should be are so in all of their parts.
+        let length = self.weather.look_at(time_s).streak_length;
+        let later_s = length * (0.5 * (begin_s + end_s) - time_s);
+        frame_scene.shutter_s = length * (end_s - begin_s);
         let drops = match drops {
             Drops::Listed(drops) => Drops::Listed(later(drops, &frame_scene, later_s)),
             Drops::OfDevice(shown) => {
@@ -69,7 +71,7 @@ impl Renderer {
         let medium = self.shower.medium(&frame_scene, drops.resolved(), &self.masks, time_s + later_s)?;
         let mut options = self.picture_options(&frame_scene, time_s, medium);
         options.rain.exposure = Exposure {
-            shutter_s: frame_scene.shutter_s,
+            shutter_s: end_s - begin_s,
             time_s: time_s + later_s,
             response: TemporalResponse::Shutter,
             ..options.rain.exposure

@@ -379,7 +379,7 @@ impl Stepped {
         {
             *base_m = (view.eye - DVec3::Y * (0.5 * *height_m)).to_array();
         }
-        self.options.shutter_s = view.shutter_s;
+        self.options.shutter_s = self.weather.longest_drop_exposure_s();
         let least =
             if self.forgets() { least_pixels(&self.law, &self.options, &view)? } else { view.least_pixels };
         self.least_pixels = Some(least);

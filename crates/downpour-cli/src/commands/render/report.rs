@@ -12,6 +12,7 @@ use crate::listing::number;
 /// Statistics of a picture of a rain.
 pub(super) fn stats(frame: &Frame, computer: &Computer, weather: &Weather) -> Value {
     let rain = &weather.rain_at(frame.time_s);
+    let look = weather.look_at(frame.time_s);
     let Frame { picture, drops, medium, .. } = frame;
     let mut passes = Map::new();
     for (name, ms) in &picture.passes {
@@ -34,6 +35,11 @@ pub(super) fn stats(frame: &Frame, computer: &Computer, weather: &Weather) -> Va
         "least_pixels": number(drops.resolved.least_pixels),
         "time_s": number(frame.time_s),
         "seed": rain.seed,
+        "look": {
+            "visibility": number(look.visibility),
+            "streak_length": number(look.streak_length),
+            "splash_size": number(weather.splashes.size),
+        },
         "triangles": frame.triangles,
         "begin_ms": number(frame.begin_ms),
         "frame_ms": number(frame.frame_ms),

@@ -61,12 +61,12 @@ impl MediumFrame {
             let (distance, thickness) = (0.5 * (begin + end), end - begin);
             let width = distance * pixel;
             let speed = f64::from((passing + Vec3::Y * (medium.fall_speed - of.speed)).length());
-            let row = f64::from(width).max(speed * exposure.shutter_s);
+            let row = f64::from(width).max(speed * exposure.drops_s());
             // Rows count from time 0.
             let rows = speed * exposure.time_s / row;
             *shell = MediumShell {
                 count: depth * depth * width * width / (of.squares * thickness),
-                pixels: (speed * exposure.shutter_s) as f32 / width,
+                pixels: (speed * exposure.drops_s()) as f32 / width,
                 row: (rows.floor() as i64) as u32,
                 part: (rows - rows.floor()) as f32,
             };
