@@ -6,6 +6,7 @@ pub mod drop_light;
 pub mod glass;
 pub mod glow;
 pub mod host;
+pub mod layers;
 pub mod medium;
 pub mod pane_shadow;
 pub mod path;

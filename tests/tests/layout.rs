@@ -20,6 +20,7 @@ use downpour_render::camera::Camera;
 use downpour_render::glass::{GlassPictureDrop, GlassPictureFrame, GlassPictureLight};
 use downpour_render::glow::GlowLevel;
 use downpour_render::host::{HostBlendFrame, HostEnvironmentFrame, HostPlateFrame};
+use downpour_render::rain::layers::{LayersFrame, LayersLamp};
 use downpour_render::rain::light::DropLightFrame;
 use downpour_render::rain::medium::{MediumFrame, MediumShell};
 use downpour_render::rain::profiles::ProfilesFrame;
@@ -105,6 +106,9 @@ fn hosts() -> Vec<Host> {
             camera, capture_right, capture_size, capture_up, capture_last,
             capture_forward, capture_texel, form, mask_size, known, light_terms, streak_samples,
             streak_color, glints, atlas, visibility, unused_a, unused_b, unused_c),
+        host!(LayersLamp as "LayersLamp" in &render::layers::LAYERS, place, is_parallel, color, unused),
+        host!(LayersFrame as "LayersFrame" in &render::layers::LAYERS,
+            fall, moved, row_part, row, count, strength, parallax, milk, stretch, distortion, unused, lamps),
         host!(EyeDrop as "EyeDrop" in &sim::field::EYE_DROP,
             offset, diameter, velocity, id, present, speed, id_low),
         host!(FieldClass as "FieldClass" in &sim::field::FIELD,

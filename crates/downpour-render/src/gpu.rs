@@ -5,6 +5,7 @@ mod glass;
 mod glow;
 mod host;
 mod kept_light;
+mod layers;
 mod medium;
 mod plate;
 mod project;

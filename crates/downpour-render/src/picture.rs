@@ -236,5 +236,11 @@ pub fn rain_layer(
     let lights = rain.lights(lighting, masks)?;
     let light = timed(passes, "lamps", || lights.light(&rain.rows));
     let medium = timed(passes, "unresolved", || rain.medium_light(&lights).layer(pixels));
-    Ok(timed(passes, "drops", || rain.layer(pixels, masks, environment, &table, &light, &medium)))
+    let mut layer =
+        timed(passes, "drops", || rain.layer(pixels, masks, environment, &table, &light, &medium));
+    if let Some(layers) = rain.layers {
+        let layers = layers.lit(camera.eye, lighting);
+        timed(passes, "layers", || layers.before(&rain.frame, pixels, environment, &mut layer));
+    }
+    Ok(layer)
 }

@@ -30,6 +30,7 @@ pub(crate) mod glint;
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 pub mod glint;
+pub mod layers;
 pub mod light;
 #[cfg(not(feature = "parity"))]
 pub(crate) mod list;
@@ -80,13 +81,14 @@ mod truth;
 mod weather;
 
 use downpour_shaders::render::rain::{DROPS_DIRECTION, DROPS_SHIFT};
-use downpour_weather::RainRefraction;
+use downpour_weather::{RainLayers, RainRefraction};
 
 pub use crate::camera::EyeMotion;
 pub use drops_frame::DropsFrame;
 pub use environment::{EnvironmentFrame, EnvironmentMap};
 pub use exposure::{Exposure, StreakColor, StreakSamples, TemporalResponse};
 pub use glint::drop_glint_right;
+
 use light::DropLightOptions;
 pub use list::Rain;
 pub use masks::{DIAMETER_STEP, DIAMETERS, DropMasks};
@@ -152,6 +154,8 @@ pub struct RainOptions {
     pub light: DropLightOptions,
     /// Multiple of the light that a drop takes out and gives, as in [`MediumOptions`]: 1 is what physics gives.
     pub visibility: f64,
+    /// Layers of a texture before the picture, in place of drops.
+    pub layers: Option<RainLayers>,
 }
 
 impl Default for RainOptions {
@@ -165,6 +169,7 @@ impl Default for RainOptions {
             exposure: Exposure::default(),
             light: DropLightOptions { glints: GLINTS, ..DropLightOptions::default() },
             visibility: 1.0,
+            layers: None,
         }
     }
 }

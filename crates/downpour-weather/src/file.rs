@@ -7,6 +7,7 @@ use super::glass::GlassTable;
 use super::glow::GlowTable;
 use super::keys::WeatherKeys;
 use super::lamps::{Lamp, LampTable};
+use super::layers::LayersTable;
 use super::lightning::{FlashTable, Lightning, LightningTable, MAX_FLASHES};
 use super::look::LookTable;
 use super::models::{Model, ModelTable};
@@ -36,6 +37,7 @@ const MAX_PATH: usize = 4096;
 pub(super) struct Tables {
     preset: Option<String>,
     rain: RainTable,
+    layers: LayersTable,
     sky: SkyTable,
     sun: Option<SunTable>,
     camera: CameraTable,
@@ -90,7 +92,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
     let camera = Camera::checked(&tables.camera, &camera_keys, &positions)?;
     let lamps = numbered(&tables.light, |i, table| Lamp::checked(i, table, &positions))?;
     let (lights, lamp_keys): (Vec<_>, Vec<_>) = lamps.into_iter().unzip();
-    let (rain, rates) = Rain::checked(&tables.rain, &positions)?;
+    let (rain, rates) = Rain::checked(&tables.rain, &tables.layers, &positions)?;
     let heaviest = Rain { rate_mm_h: rates.as_ref().map_or(rain.rate_mm_h, rain::most), ..rain };
     if rates.is_some() && tables.drips.enabled == Some(true) {
         let allowed = "false, or a rate without keys";

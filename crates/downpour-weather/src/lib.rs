@@ -31,6 +31,7 @@ mod glass;
 mod glow;
 mod keys;
 mod lamps;
+mod layers;
 mod lightning;
 mod load;
 mod look;
@@ -65,6 +66,7 @@ pub use glass::{Pane, PaneFocus, PaneFresnel, PaneShadow};
 pub use glow::{GLARE, Glow, GlowFilter};
 pub use keys::WeatherKeys;
 pub use lamps::Lamp;
+pub use layers::RainLayers;
 pub use lightning::{
     Flash, FlashExposure, FlashLight, Lightning, MAX_FLASHES, MAX_STROKES, MAX_STROKES_PER_SECOND, Storm,
     Stroke, StrokePulse,

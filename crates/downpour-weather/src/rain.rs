@@ -2,6 +2,7 @@
 
 use super::fault::Positions;
 use super::file::path;
+use super::layers::{LayersForm, LayersTable, RainLayers};
 use super::quantity::{
     BoxM, DropSize, Exactly, Fraction, GammaShape, In, MedianMm, OneMm, PositionM, PressureHpa, RadiusM,
     RateHeightM, RateMmH, ShortS, TemperatureC, Whole,
@@ -291,6 +292,8 @@ pub struct Rain {
     pub extinction: RainExtinction,
     /// Look of the drops that are not drawn one by one.
     pub unresolved: RainUnresolved,
+    /// Layers of a texture in place of drops.
+    pub layers: Option<RainLayers>,
 }
 
 impl Default for Rain {
@@ -315,6 +318,7 @@ impl Default for Rain {
             drop_light: RainDropLight::default(),
             extinction: RainExtinction::default(),
             unresolved: RainUnresolved::default(),
+            layers: None,
         }
     }
 }
@@ -345,6 +349,7 @@ pub(super) struct RainTable {
     drop_light: Option<RainDropLight>,
     extinction: Option<RainExtinction>,
     unresolved: Option<RainUnresolved>,
+    layers: Option<LayersForm>,
 }
 
 /// A number of drops of one size.
@@ -443,6 +448,7 @@ impl Rain {
     /// The rain at time 0, and its rate over time if that changes.
     pub(super) fn checked(
         table: &RainTable,
+        layers: &LayersTable,
         positions: &Positions<'_>,
     ) -> Result<(Self, Option<Keyed<f64>>), SceneError> {
         let default = Self::default();
@@ -520,6 +526,7 @@ impl Rain {
             drop_light: table.drop_light.unwrap_or_default(),
             extinction: table.extinction.unwrap_or_default(),
             unresolved: table.unresolved.unwrap_or_default(),
+            layers: layers.checked(table.layers, (volume, table.unresolved), positions)?,
         };
         match table.drops {
             None => Ok((rain, rates)),

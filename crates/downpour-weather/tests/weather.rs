@@ -477,11 +477,11 @@ fn t11_keys_are_known_and_stand_once() {
         "line 2, column 3: rain.rate: unknown key \"rate\", perhaps rate_mm_h; allowed: rate_mm_h, rate_height_m, distribution, \
          gamma_shape, median_diameter_mm, seed, temperature_c, pressure_hpa, fall_speed, drop_shape, \
          mask_model, refraction, drops, volume, box_m, cylinder, max_drops, drag, bounce, drop_light, extinction, \
-         unresolved",
+         unresolved, layers",
     );
     says(
         "[rian]\nrate_mm_h = 5",
-        "line 1, column 2: rian: unknown key \"rian\", perhaps rain; allowed: preset, rain, sky, sun, camera, model, light, \
+        "line 1, column 2: rian: unknown key \"rian\", perhaps rain; allowed: preset, rain, layers, sky, sun, camera, model, light, \
          flash, lightning, wind, gusts, turbulence, wind_field, streaks, glass, fog, glow, look, puddle, wetness, splashes, drips, drip, output",
     );
     refused("[camera]\nfov_rad = 1", 2, "unknown key \"fov_rad\", perhaps fov_deg;");
@@ -506,6 +506,11 @@ fn t11_keys_are_known_and_stand_once() {
     refused("[glow]\nwidth = 0", 2, "0.1 to 10");
     refused("[glow]\nfilter = \"box\"", 2, "glow.filter");
     refused("[glow]\nbloom = 1", 2, "glow.bloom");
+    refused("[layers]\nmilk = 0.2", 2, "layers.milk");
+    refused("[rain]\nlayers = \"tatarchuk-2006\"\n[layers]\nparallax = 1", 2, "1.1 to 50");
+    refused("[rain]\nlayers = \"tatarchuk-2006\"\nvolume = \"view\"", 2, "rain.volume");
+    refused("[rain]\nlayers = \"tatarchuk-2006\"\nunresolved = \"streaks\"", 2, "rain.unresolved");
+    refused("[rain]\nlayers = \"tatarchuk\"", 2, "rain.layers");
     refused("[look]\nvisibility = -1", 2, "0 to 20");
     refused("[look]\nvisibility = nan", 2, "look.visibility");
     refused("[look]\nstreak_length = 21", 2, "look.streak_length");

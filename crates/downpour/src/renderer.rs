@@ -478,6 +478,7 @@ impl Renderer {
                 exposure: Exposure::of_weather(&self.weather.at(time_s), frame_scene.motion, time_s),
                 light: DropLightOptions::of_weather(&self.weather),
                 visibility: self.weather.look_at(time_s).visibility,
+                layers: self.weather.rain.layers,
                 ..RainOptions::default()
             },
             glow: Glow::of_weather(&self.weather, &medium),

@@ -119,7 +119,10 @@ impl Shower {
         let law = rain.sizes()?;
         // The papers' drag has no closed form.
         let relaxes = rain.drag == RainDrag::Relaxation;
+        // Layers need a rain, but no drops.
+        let has_layers = rain.layers.is_some();
         let is_closed = match (rain.volume, weather.wind.uniform()) {
+            _ if has_layers => true,
             (RainVolume::Auto, Some(_)) if relaxes => true,
             (RainVolume::ClosedForm, Some(_)) if !relaxes => return Err(ShowerError::DragByStep),
             (RainVolume::ClosedForm, Some(_)) => true,
@@ -242,7 +245,7 @@ impl Shower {
     ) -> Result<VisibleDrops, ShowerError> {
         let mut visible = match &mut self.form {
             Form::Closed(field) => {
-                let view = View { max_drops: self.weather.rain.max_drops, ..frame_scene.view()? };
+                let view = drops_view(&self.weather.rain, frame_scene, self.weather.rain.max_drops)?;
                 let obstacles = obstacles(frame_scene);
                 let impacts = (self.splashes.as_ref(), Some(&self.bounce));
                 drops_among(field, &obstacles, &view, time_s, impacts)?
@@ -252,7 +255,8 @@ impl Shower {
             }
         };
         let view = View { max_drops: self.weather.rain.max_drops, ..frame_scene.view()? };
-        let dripped = self.drips(frame_scene, &view, visible.resolved.least_pixels, time_s)?;
+        let least = drips_least(&self.weather.rain, &visible.resolved);
+        let dripped = self.drips(frame_scene, &view, least, time_s)?;
         visible.drops.extend(dripped);
         // A pane keeps the rain outside.
         if let Some(pane) = pane_plane(&self.weather, &frame_scene.viewpoint)? {
@@ -288,11 +292,13 @@ impl Shower {
     ) -> Result<ShowerView, ShowerError> {
         // Room for a quarter more is kept.
         let max_drops = self.weather.rain.max_drops.min(max_room / 5 * 4);
-        let view = View { max_drops, ..frame_scene.view()? };
+        let view = drops_view(&self.weather.rain, frame_scene, max_drops)?;
         let resolved = field.resolved(&view, time_s, max_room)?;
         let least = resolved.least_pixels;
         let obstacles = obstacles(frame_scene);
-        let mut droplets = self.drips(frame_scene, &view, least, time_s)?;
+        let of_drips = View { max_drops, ..frame_scene.view()? };
+        let mut droplets =
+            self.drips(frame_scene, &of_drips, drips_least(&self.weather.rain, &resolved), time_s)?;
         #[cfg(feature = "wgpu")]
         let (on_device, bounce) = (
             self.splashes.filter(|splashes| splashes.fits_device(field, &view, time_s, &obstacles)),
@@ -409,6 +415,7 @@ impl Shower {
             pane: pane_plane(&self.weather, &frame_scene.viewpoint)?,
             grain: match self.weather.rain.unresolved {
                 RainUnresolved::Even => MediumGrain::Even,
+                _ if self.weather.rain.layers.is_some() => MediumGrain::Even,
                 _ => MediumGrain::Streaks,
             },
             visibility: self.weather.look_at(time_s).visibility,
@@ -475,6 +482,20 @@ pub(crate) fn drops_among(
         visible.drops.extend(field.splashes(obstacles, view, time_s, splashes)?);
     }
     Ok(visible)
+}
+
+/// Least diameter on the picture, pixels, of drops of a rain that shows none.
+const NONE_PIXELS: f64 = 1.0e9;
+
+/// The view of a picture, for the drops of a rain that is drawn drop by drop; one without drops for layers.
+fn drops_view(rain: &Rain, frame_scene: &FrameScene, max_drops: u32) -> Result<View, ShowerError> {
+    let view = View { max_drops, ..frame_scene.view()? };
+    Ok(if rain.layers.is_some() { View { least_pixels: NONE_PIXELS, ..view } } else { view })
+}
+
+/// Least diameter on the picture, pixels, of drops that drip.
+fn drips_least(rain: &Rain, resolved: &Resolved) -> f64 {
+    if rain.layers.is_some() { View::default().least_pixels } else { resolved.least_pixels }
 }
 
 /// What stops drops in a scene.

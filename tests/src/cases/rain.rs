@@ -10,6 +10,7 @@ use downpour_render::camera::Viewpoint;
 use downpour_render::gpu::RainPipeline;
 use downpour_render::light::LightSource;
 use downpour_render::picture::compose_pixel;
+use downpour_render::rain::layers::{layers_fresnel, layers_refracted};
 use downpour_render::rain::light::{DropLightForm, DropLightOptions};
 use downpour_render::rain::medium::MediumGrain;
 use downpour_render::rain::medium::fog::medium_fog_depth;
@@ -24,6 +25,7 @@ use downpour_render::rain::{
     DropMasks, EnvironmentMap, Exposure, EyeMotion, MediumOptions, PanePlane, Rain, RainMedium, RainOptions,
     RefractionForm, ScreenDrop, StreakColor, StreakProfiles, StreakSamples, TemporalResponse,
 };
+use downpour_shaders::render::layers::{LAYERS, LAYERS_KERNEL};
 use downpour_shaders::render::medium::{
     MEDIUM, MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL, MEDIUM_SPREAD, MEDIUM_STREAKS,
 };
@@ -38,7 +40,7 @@ use downpour_trace::capture::trace_environment;
 use downpour_trace::data::{RenderFrame, SceneData};
 use downpour_trace::gpu::{SampleDispatches, ScenePipeline};
 use downpour_trace::scene::SceneView;
-use downpour_weather::Fog;
+use downpour_weather::{Fog, RainLayers};
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
 use super::drop_light::{atlas, lamps};
@@ -218,6 +220,7 @@ enum Part {
     Seen,
     Filter,
     Drops,
+    Layers,
 }
 
 /// An exposure of some seconds, out of focus by a little, with drops that swing.
@@ -243,6 +246,18 @@ fn rain_case(
 ) -> Result<Run, GpuError> {
     let options = RainOptions { form, exposure, ..RainOptions::default() };
     masks_case(gpu, placement, options, &DropMasks::trace(1.333).expect("masks"), part)
+}
+
+/// Layers of a texture before drops.
+fn layers_case(gpu: &Gpu, placement: Placement, form: RefractionForm) -> Result<Run, GpuError> {
+    let layers = Some(RainLayers { parallax: 6.0, milk: 0.2 });
+    let options = RainOptions {
+        form,
+        layers,
+        exposure: exposure(0.02, StreakSamples::Table),
+        ..RainOptions::default()
+    };
+    masks_case(gpu, placement, options, &DropMasks::trace(1.333).expect("masks"), Part::Layers)
 }
 
 /// Streaks with the light of an atlas.
@@ -354,6 +369,16 @@ fn masks_case(
             });
             Ok(run(SIZE[0], &layer, &pass.layer()?))
         }
+        Part::Layers => {
+            let drawn = [pass.lamps(), pass.streaks(), pass.medium(), vec![pass.drops()]];
+            gpu.submit(&drawn.concat())?;
+            // Before the same rain.
+            let mut layer = pass.layer()?;
+            gpu.submit(&[pass.layers().expect("layers")])?;
+            let layers = rain.layers.expect("layers").lit(rain.frame.camera.eye, &view);
+            layers.before(&rain.frame, clean, capture, &mut layer);
+            Ok(run(SIZE[0], &layer, &pass.layer()?))
+        }
         Part::Open => {
             let cells = found().len() - 2 * clean.len();
             Ok(run(16, &found()[..cells], &pass.medium_found()?[..cells]))
@@ -429,6 +454,10 @@ const DRAWN: Tol = Tol::relative(
     "the capture above; directions of a mask's rim turn by the width of the picture in a texel",
 )
 .with_outliers(1.0e-2);
+
+const LAYERED: Tol =
+    Tol::relative(5.0e-3, 1.0e-3, "the capture above; a pixel at the edge of a cell may fall on either side")
+        .with_outliers(1.0e-2);
 
 const SCATTERED: Tol = Tol::relative(
     3.0e-3,
@@ -570,6 +599,20 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             })],
             Tol::exact("whole numbers"),
             |a| medium_spread_side(a.u32(), a.u32(), a.u32(), a.u32(), a.u32() > 0).words(),
+        ),
+        FunctionCase::new(
+            "layers_fresnel",
+            &LAYERS,
+            &[Uniform(-0.5, 1.5)],
+            Tol::relative(1.0e-6, 1.0e-7, "products of a few numbers, which may be fused"),
+            |a| layers_fresnel(a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "layers_refracted",
+            &LAYERS,
+            &[Uniform(-1.0, 1.0); 6],
+            Tol::relative(2.0e-6, 1.0e-5, "a root of a difference from 1"),
+            |a| layers_refracted(Vec3::from_array(a.f32s()), Vec3::from_array(a.f32s())).to_array().words(),
         ),
         FunctionCase::new(
             "medium_spread_alike",
@@ -859,6 +902,24 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             let options = RainOptions { exposure, visibility: 3.0, ..RainOptions::default() };
             masks_case(gpu, LEVEL, options, &DropMasks::trace(1.333).expect("masks"), Part::Drops)
         }),
+        KernelCase {
+            name: "main_layers: lamps",
+            kernel: &LAYERS_KERNEL,
+            with: &[],
+            overrides: &[],
+            text: None,
+            tol: LAYERED,
+            run: |gpu| layers_case(gpu, LEVEL, RefractionForm::Direction),
+        },
+        KernelCase {
+            name: "main_layers: Rousseau 2006",
+            kernel: &LAYERS_KERNEL,
+            with: &[],
+            overrides: &[],
+            text: None,
+            tol: LAYERED,
+            run: |gpu| layers_case(gpu, SLANTED, RefractionForm::Rousseau2006),
+        },
         drops("main_drops: streaks that fade, by the table", |gpu| {
             let response = TemporalResponse::Fading;
             let exposure = Exposure { response, ..exposure(0.075, StreakSamples::Table) };

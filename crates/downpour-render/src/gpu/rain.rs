@@ -1,6 +1,6 @@
 //! Drops before a scene on a GPU.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use downpour_drop::oscillation::Fluids;
 use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
@@ -12,6 +12,7 @@ use downpour_shaders::render::rain::{
 
 use super::drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
 use super::kept_light::KeptLight;
+use super::layers::{LayersPass, LayersPipeline};
 use super::medium::{MediumPass, MediumPipeline};
 use super::plate::PlateOnGpu;
 use super::project::{FallingOnGpu, JobGroups, ListOnGpu, ProjectPass, ProjectPipeline};
@@ -35,6 +36,8 @@ pub struct RainPipeline {
     lamps: DropLightPipeline,
     medium: MediumPipeline,
     drops: ComputeKernel,
+    /// Made for the first picture with layers.
+    layers: Arc<OnceLock<LayersPipeline>>,
 }
 
 /// Masks on the device.
@@ -62,6 +65,7 @@ pub struct RainPass<'a> {
     lamps: [DropLightPass<'a>; 2],
     medium: MediumPass<'a>,
     drops: wgpu::BindGroup,
+    layers: Option<LayersPass>,
     texels: wgpu::Buffer,
     table: wgpu::Buffer,
     layer: wgpu::Buffer,
@@ -89,7 +93,17 @@ impl RainPipeline {
             lamps: DropLightPipeline::new(gpu)?,
             medium: MediumPipeline::new(gpu)?,
             drops: kernel(&DROPS_KERNEL)?,
+            layers: Arc::default(),
         })
+    }
+
+    /// The pipeline of layers.
+    fn layers(&self) -> Result<&LayersPipeline, GpuError> {
+        if let Some(known) = self.layers.get() {
+            return Ok(known);
+        }
+        let made = LayersPipeline::new(&self.gpu)?;
+        Ok(self.layers.get_or_init(|| made))
     }
 
     /// Drops whose lists the device can bind.
@@ -242,6 +256,14 @@ impl RainPipeline {
             medium.frame(),
         ];
         let shown = self.drops.bind(buffers, &bindings)?;
+        let layers = match &rain.layers {
+            Some(layers) => {
+                let layers = layers.lit(rain.frame.camera.eye, lights[0].lighting);
+                let of = [&frame, &texels, clean, &layer];
+                Some(self.layers()?.prepare(buffers, picture, &layers, of)?)
+            }
+            None => None,
+        };
         Ok(RainPass {
             pipeline: self,
             size: picture,
@@ -254,6 +276,7 @@ impl RainPipeline {
             lamps,
             medium,
             drops: shown,
+            layers,
             texels,
             table,
             layer,
@@ -383,6 +406,12 @@ impl RainPass<'_> {
     pub fn drops(&self) -> Dispatch<'_> {
         let groups = [self.size[0].div_ceil(8), self.size[1].div_ceil(8), 1];
         self.pipeline.drops.dispatch(&self.drops, groups)
+    }
+
+    /// Layers of a texture before that, if the rain has some; after [`RainPass::drops`].
+    #[must_use]
+    pub fn layers(&self) -> Option<Dispatch<'_>> {
+        self.layers.as_ref().map(LayersPass::dispatch)
     }
 
     /// The rain on the device, as [`RainPass::layer`] reads it.

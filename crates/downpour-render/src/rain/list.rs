@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::drops_frame::DropsFrame;
 use super::environment::EnvironmentFrame;
+use super::layers::LayersFrame;
 use super::light::{DropLightForm, DropLightOptions, DropLights};
 use super::medium::{MediumFrame, MediumLight, lamps_of};
 use super::profiles::StreakProfiles;
@@ -33,6 +34,8 @@ pub struct Rain {
     pub frame: DropsFrame,
     /// Drops that are not drawn one by one.
     pub medium: MediumFrame,
+    /// Layers of a texture in place of drops, without their lamps.
+    pub layers: Option<LayersFrame>,
     /// Layout of the environment map.
     pub environment: EnvironmentFrame,
     /// Profiles of moving drops in the streak radiance table.
@@ -79,6 +82,7 @@ impl Rain {
                     &options.exposure,
                 )
             },
+            layers: LayersFrame::new(camera, options),
             environment,
             profiles,
             list,

@@ -221,6 +221,12 @@ impl RainMedium {
         Self { velocity, rise: (-velocity).try_normalize().unwrap_or(Vec3::Y), ..self }
     }
 
+    /// Mean velocity of the drops, m/s.
+    #[must_use]
+    pub fn velocity(&self) -> Vec3 {
+        self.velocity
+    }
+
     /// Extinction of all drops, drawn or not, for level rays, 1/m.
     #[must_use]
     pub fn extinction(&self) -> f64 {

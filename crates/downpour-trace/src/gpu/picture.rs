@@ -314,6 +314,9 @@ impl PictureRenderer {
         passes.run("streaks", &pass.streaks())?;
         passes.run_each("unresolved", &pass.medium())?;
         passes.run("drops", &[pass.drops(), pass.seen()])?;
+        if let Some(layers) = pass.layers() {
+            passes.run("layers", &[layers])?;
+        }
         let layer = pass.layer_buffer().clone();
         let environment = plate.of(&clean).environment.clone();
         let distances = pass.distances().0.clone();

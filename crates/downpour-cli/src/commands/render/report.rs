@@ -39,6 +39,7 @@ pub(super) fn stats(frame: &Frame, computer: &Computer, weather: &Weather) -> Va
             "visibility": number(look.visibility),
             "streak_length": number(look.streak_length),
             "splash_size": number(weather.splashes.size),
+            "milk": weather.rain.layers.map(|layers| number(layers.milk)),
         },
         "triangles": frame.triangles,
         "begin_ms": number(frame.begin_ms),
