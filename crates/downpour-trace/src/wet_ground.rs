@@ -1,9 +1,10 @@
 //! The puddles of a weather, from picture to picture.
 
 use downpour_drop::distribution::DropSizeDistribution;
+use downpour_lattice::puddle::PuddleForm;
 use downpour_scene::picture::{Picture, Pixels};
 use downpour_sim::field::RainField;
-use downpour_weather::{Loaded, Puddle, PuddleFill, PuddleRings, PuddleShape, Weather};
+use downpour_weather::{Loaded, Puddle, PuddleFill, PuddleRings, PuddleShape, Waves, Weather};
 use glam::{DVec3, Vec2, Vec3};
 
 use crate::frame_scene::FrameScene;
@@ -70,6 +71,10 @@ impl WetGround {
             (Some(law), Some(rates)) => Ripples::changing(law, rates, seed, first_s)?,
             _ => Ripples::new(law.as_ref(), seed, first_s)?,
         };
+        let ripples = match weather.waves {
+            Waves::Water => ripples,
+            Waves::Membrane(speed) => ripples.with_form(PuddleForm::Membrane { speed_m_s: speed as f32 })?,
+        };
         let masks = loaded.masks.iter().map(Option::as_ref).chain(std::iter::repeat(None));
         let (mut puddles, mut filled) = (Vec::new(), Vec::new());
         for (index, (puddle, mask)) in weather.puddles.iter().zip(masks).enumerate() {
@@ -99,7 +104,7 @@ impl WetGround {
                     PuddleMap::painted(&frame_scene.data, &ground, [2, 2], &[0.0; 4])
                 }
             };
-            puddles.push((map, look(puddle)));
+            puddles.push((map, look(puddle, weather.waves)));
         }
         let (weather, origin) = (weather.clone(), frame_scene.origin);
         Ok(Some(Self { weather, puddles, filled, origin, ripples, law, rings: None, shown: None }))
@@ -229,14 +234,15 @@ fn depths(mask: &Picture, deepest: f32) -> Vec<f32> {
     }
 }
 
-fn look(puddle: &Puddle) -> PuddleLook {
+fn look(puddle: &Puddle, waves: Waves) -> PuddleLook {
     PuddleLook {
         scale: puddle.ripple_scale as f32,
         angle: puddle.ripple_turn as f32,
         influence: puddle.ripple_influence as f32,
         scattering_albedo: Vec3::from(puddle.color.map(|part| part as f32)),
         extinction: (1.0 / puddle.attenuation_length) as f32,
-        rings: puddle.rings == PuddleRings::Drops,
+        // The rings of single drops are those of waves on water.
+        rings: puddle.rings == PuddleRings::Drops && waves == Waves::Water,
         ..PuddleLook::default()
     }
 }

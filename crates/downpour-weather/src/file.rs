@@ -15,6 +15,7 @@ use super::presets;
 use super::puddle::{self, Puddle, PuddleTable};
 use super::quantity::{Exactly, Whole};
 use super::rain::{self, Rain, RainTable};
+use super::ripples::RipplesTable;
 use super::sky::{Sky, SkyTable, SunSource, SunTable};
 use super::splashes::{Splashes, SplashesTable};
 use super::streaks::StreaksTable;
@@ -55,6 +56,7 @@ pub(super) struct Tables {
     glow: GlowTable,
     look: LookTable,
     puddle: Vec<PuddleTable>,
+    ripples: RipplesTable,
     wetness: WetnessTable,
     splashes: SplashesTable,
     drips: DripsTable,
@@ -128,6 +130,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         wind,
         streaks,
         puddles,
+        waves: tables.ripples.checked(&positions)?,
         keys: WeatherKeys::new(rates, camera_keys, sky_keys, sun_keys, lamp_keys, fills, look_keys),
         size: tables.output.size.map_or(default.size, |Exactly(size)| size.map(|Whole(side)| side)),
     })

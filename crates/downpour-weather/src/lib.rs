@@ -41,6 +41,7 @@ mod presets;
 mod puddle;
 mod quantity;
 mod rain;
+mod ripples;
 #[cfg(feature = "schema")]
 mod schema;
 mod sky;
@@ -81,6 +82,7 @@ pub use rain::{
     RAIN_BOX_M, Rain, RainBounce, RainCylinder, RainDrag, RainDropLight, RainDropShape, RainExtinction,
     RainRefraction, RainUnresolved, RainVolume,
 };
+pub use ripples::Waves;
 #[cfg(feature = "schema")]
 pub use schema::json_schema;
 pub use sky::{Sky, SkySource, SunSource};
@@ -170,6 +172,8 @@ pub struct Weather {
     pub look: Look,
     /// Water on the ground, in the order of the file.
     pub puddles: Vec<Puddle>,
+    /// Law of the waves on that water.
+    pub waves: Waves,
     /// Wetness of the surfaces.
     pub wetness: Wetness,
     /// Splashes where drops hit surfaces.
@@ -203,6 +207,7 @@ impl Default for Weather {
             glow: Glow::default(),
             look: Look::PHYSICAL,
             puddles: Vec::new(),
+            waves: Waves::Water,
             wetness: Wetness::default(),
             splashes: Splashes::default(),
             drips: Drips::default(),

@@ -55,6 +55,7 @@ ranges! {
     FogHeightM: 0.1, 1e5, "0.1 to 1e5 m";
     FogAsymmetry: 0.0, 0.95, "0 to 0.95";
     GlowWidth: 0.1, 10.0, "0.1 to 10";
+    WaveMS: 0.05, 2.0, "0.05 to 2 m/s";
     Parallax: 1.1, 50.0, "1.1 to 50";
     Visibility: 0.0, 20.0, "0 to 20";
     StreakLength: 0.0, 20.0, "0 to 20";

@@ -482,7 +482,7 @@ fn t11_keys_are_known_and_stand_once() {
     says(
         "[rian]\nrate_mm_h = 5",
         "line 1, column 2: rian: unknown key \"rian\", perhaps rain; allowed: preset, rain, layers, sky, sun, camera, model, light, \
-         flash, lightning, wind, gusts, turbulence, wind_field, streaks, glass, fog, glow, look, puddle, wetness, splashes, drips, drip, output",
+         flash, lightning, wind, gusts, turbulence, wind_field, streaks, glass, fog, glow, look, puddle, ripples, wetness, splashes, drips, drip, output",
     );
     refused("[camera]\nfov_rad = 1", 2, "unknown key \"fov_rad\", perhaps fov_deg;");
     refused("[camera]\nshutter_s = 1.5", 2, "0 to 1 s");
@@ -506,6 +506,8 @@ fn t11_keys_are_known_and_stand_once() {
     refused("[glow]\nwidth = 0", 2, "0.1 to 10");
     refused("[glow]\nfilter = \"box\"", 2, "glow.filter");
     refused("[glow]\nbloom = 1", 2, "glow.bloom");
+    refused("[ripples]\nspeed_m_s = 0.3", 2, "ripples.speed_m_s");
+    refused("[ripples]\nwaves = \"membrane\"\nspeed_m_s = 3", 2, "0.05 to 2 m/s");
     refused("[layers]\nmilk = 0.2", 2, "layers.milk");
     refused("[rain]\nlayers = \"tatarchuk-2006\"\n[layers]\nparallax = 1", 2, "1.1 to 50");
     refused("[rain]\nlayers = \"tatarchuk-2006\"\nvolume = \"view\"", 2, "rain.volume");

@@ -114,6 +114,23 @@ fn ripples_on_a_device_are_those_of_the_cpu() {
     assert!(there.picture.passes.iter().all(|(name, _)| *name != "ripples"));
 }
 
+/// The paper's waves, which have one speed, are others than those of water, on a device as on the CPU.
+#[test]
+fn a_membrane_has_its_own_waves() {
+    let Some(gpu) = device::gpu(LimitSet::WebGpuDefault) else { return };
+    let folder = folder();
+    let mut of_water = opened(&folder, Device::cpu(), 0);
+    let text = format!("{WEATHER}[ripples]\nwaves = 'membrane'\nspeed_m_s = 0.4\n");
+    std::fs::write(folder.path().join("a.toml"), text).unwrap();
+    let mut of_cpu = opened(&folder, Device::cpu(), 0);
+    let mut of_device = opened(&folder, Device::gpu(gpu, false).with_ripples_on_software_driver(), 0);
+    let time_s = TIMES[1];
+    let [water, cpu, there] =
+        [&mut of_water, &mut of_cpu, &mut of_device].map(|renderer| renderer.frame(time_s).unwrap());
+    let (other, found) = (apart(&water, &cpu), apart(&cpu, &there));
+    assert!(found < 0.05 * other, "{found}, and {other} from waves on water");
+}
+
 /// A plate that stays is made anew when the water has moved, and refined while it has not.
 #[test]
 fn a_plate_is_not_kept_over_water_that_moves() {

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use downpour_drop::distribution::DropSizeDistribution;
 use downpour_drop::fall_speed::TerminalSpeed;
-use downpour_lattice::puddle::DropRing;
+use downpour_lattice::puddle::{DropRing, PuddleForm};
 use downpour_math::ops::f64 as ops;
 use downpour_shaders::render::puddle_rings::{
     PUDDLE_RINGS_CELL, PUDDLE_RINGS_DISTANCE, PUDDLE_RINGS_DISTANCES, PUDDLE_RINGS_LIFE, PUDDLE_RINGS_ROWS,
@@ -145,7 +145,7 @@ impl Rings {
             let low = DIAMETERS_M[0] * ops::pow(ratio, f64::from(k));
             let diameter = low * ratio.sqrt();
             let speed = law.at(diameter)?;
-            let ring = DropRing::new(&options(), diameter, speed)?;
+            let ring = DropRing::new(&options(PuddleForm::GravityCapillary), diameter, speed)?;
             let integral = |until: f64, weight: &dyn Fn(f64) -> f64| {
                 let steps = 48;
                 let step = until / f64::from(steps);
@@ -281,7 +281,7 @@ fn slopes(law: &TerminalSpeed, smallest: f64) -> Result<Vec<[u32; 4]>, PuddleErr
         (0..PUDDLE_RINGS_TIMES).map(|n| f64::from(n) * f64::from(PUDDLE_RINGS_TIME)).collect();
     let of_size = |k: u32| {
         let diameter = smallest * ops::pow(ratio, f64::from(k) / f64::from(PUDDLE_RINGS_SIZES - 1));
-        let ring = DropRing::new(&options(), diameter, law.at(diameter)?)?;
+        let ring = DropRing::new(&options(PuddleForm::GravityCapillary), diameter, law.at(diameter)?)?;
         let count = PUDDLE_RINGS_DISTANCES as usize;
         let mut slopes = ring.slopes(&times, f64::from(PUDDLE_RINGS_DISTANCE), count);
         for (row, &time) in slopes.chunks_mut(count).zip(&times) {

@@ -4,7 +4,7 @@ use downpour_drop::distribution::DropSizeDistribution;
 #[cfg(feature = "wgpu")]
 use downpour_lattice::gpu::puddle::{GpuPuddle, PuddleKernels};
 use downpour_lattice::puddle::{
-    Impact, Puddle, PuddleBorder, PuddleOptions, PuddleRain, slope_levels as levels_below,
+    Impact, Puddle, PuddleBorder, PuddleForm, PuddleOptions, PuddleRain, slope_levels as levels_below,
 };
 use downpour_math::pyramid::pyramid_append;
 use downpour_wind::Keyed;
@@ -33,6 +33,7 @@ const STEPS_OF_RATE: i64 = 50;
 #[derive(Debug)]
 pub struct Ripples {
     lattice: Lattice,
+    form: PuddleForm,
     /// True if nothing has fallen since the water was level: steps leave it so.
     is_level: bool,
     rain: Option<PuddleRain>,
@@ -54,9 +55,9 @@ enum Lattice {
 }
 
 impl Lattice {
-    fn set_level(&mut self) -> Result<(), PuddleError> {
+    fn set_level(&mut self, form: PuddleForm) -> Result<(), PuddleError> {
         match self {
-            Self::Cpu(lattice) => **lattice = Puddle::new(&options())?,
+            Self::Cpu(lattice) => **lattice = Puddle::new(&options(form))?,
             #[cfg(feature = "wgpu")]
             Self::Gpu { lattice, .. } => lattice.set_level()?,
         }
@@ -117,9 +118,21 @@ impl Ripples {
     /// # Errors
     /// [`PuddleError`] if the lattice refuses.
     pub fn new(rain: Option<&DropSizeDistribution>, seed: u64, time_s: f64) -> Result<Self, PuddleError> {
-        let lattice = Lattice::Cpu(Box::new(Puddle::new(&options())?));
+        let form = PuddleForm::GravityCapillary;
+        let lattice = Lattice::Cpu(Box::new(Puddle::new(&options(form))?));
         let rain = rain.map(|rain| PuddleRain::new(rain, seed));
-        Ok(Self { lattice, is_level: true, rain, changes: None, step: step_of(time_s - MEMORY_S) })
+        Ok(Self { lattice, form, is_level: true, rain, changes: None, step: step_of(time_s - MEMORY_S) })
+    }
+
+    /// The same with waves of another law, beginning with level water.
+    ///
+    /// # Errors
+    /// As [`Ripples::new`].
+    pub fn with_form(mut self, form: PuddleForm) -> Result<Self, PuddleError> {
+        self.form = form;
+        self.lattice = Lattice::Cpu(Box::new(Puddle::new(&options(form))?));
+        self.is_level = true;
+        Ok(self)
     }
 
     /// Holds and steps the lattice on a device from now on, beginning with level water. After an error it stays where it is.
@@ -128,7 +141,7 @@ impl Ripples {
     /// [`PuddleError::Gpu`]: what the device says.
     #[cfg(feature = "wgpu")]
     pub fn move_to_device(&mut self, kernels: &PuddleKernels) -> Result<(), PuddleError> {
-        let lattice = Box::new(GpuPuddle::with_kernels(kernels, &options())?);
+        let lattice = Box::new(GpuPuddle::with_kernels(kernels, &options(self.form))?);
         self.lattice = Lattice::Gpu { lattice, counted: std::cell::Cell::default() };
         self.is_level = true;
         Ok(())
@@ -167,7 +180,7 @@ impl Ripples {
         let until = step_of(time_s);
         let anew = step_of(time_s - 2.0 * MEMORY_S);
         if self.step < anew {
-            self.lattice.set_level()?;
+            self.lattice.set_level(self.form)?;
             (self.is_level, self.step) = (true, anew);
         }
         let extent = [CELLS as f32 * CELL_M; 2];
@@ -223,8 +236,9 @@ impl Ripples {
 }
 
 /// Options of the lattice.
-pub(super) fn options() -> PuddleOptions {
+pub(super) fn options(form: PuddleForm) -> PuddleOptions {
     PuddleOptions {
+        form,
         size: [CELLS; 2],
         cell_m: CELL_M,
         depth_m: DEPTH_M,
