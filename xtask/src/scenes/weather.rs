@@ -22,6 +22,8 @@ const STORM_SKY: &str = "\n[sky]\nzenith_color = [420, 470, 540]\n";
 /// Near and strong flashes: by day the light of a common stroke hardly shows. The first one, of three strokes, is at 0.53 s.
 const LIGHTNING: &str =
     "\n[lightning]\nper_minute = 20\nseed = 14\ndistance_m = [500, 1500]\nbrightness = 20\n";
+/// Water that runs off awnings, ledges and leaves.
+const DRIPS: &str = "\n[drips]\nenabled = true\n";
 /// A sun at 11 degrees, below the edge of the clouds, along the street; 127.5 klx exp(-0.21 / sin h), tinted.
 const LOW_SUN: &str = "\n[sky]\nzenith_color = [900, 1000, 1180]\n\n[sun]\nazimuth_deg = 62\nelevation_deg = 24\n\
                        illuminance_lux = 60000\ncolor = [1, 0.84, 0.62]\n";
@@ -100,7 +102,7 @@ pub(super) fn make(street: &Street) -> Vec<WeatherFile> {
             "dusk.toml",
             "The street at dusk in rain: windows and lanterns are lit, the sky is still blue.",
             night.clone(),
-            &[&rain(30), DUSK_SKY, &along(-1.3), SIZE],
+            &[&rain(30), DRIPS, DUSK_SKY, &along(-1.3), SIZE],
         ),
         file(
             "storm.toml",
@@ -108,6 +110,7 @@ pub(super) fn make(street: &Street) -> Vec<WeatherFile> {
             model(false, ""),
             &[
                 &rain(150),
+                DRIPS,
                 STORM_SKY,
                 "\n[[wind]]\nuniform = { speed_m_s = 9, towards_deg = 80 }\n",
                 LIGHTNING,
@@ -119,7 +122,7 @@ pub(super) fn make(street: &Street) -> Vec<WeatherFile> {
             "rain-shadow.toml",
             "Rain before a low sun below clouds: drops shine against houses in the shade.",
             model(false, ""),
-            &[&rain(40), LOW_SUN, &camera([1.6, 1.5, -52.0], [-0.6, 2.6, -30.0], 45.0, -0.6), SIZE],
+            &[&rain(40), DRIPS, LOW_SUN, &camera([1.6, 1.5, -52.0], [-0.6, 2.6, -30.0], 45.0, -0.6), SIZE],
         ),
         file(
             "puddles.toml",
@@ -127,6 +130,7 @@ pub(super) fn make(street: &Street) -> Vec<WeatherFile> {
             night.clone(),
             &[
                 &rain(25),
+                DRIPS,
                 NIGHT_SKY,
                 &camera([-1.0, 1.15, -16.0], [0.4, 0.3, -27.0], 46.0, NIGHT_EV),
                 SIZE,
