@@ -129,8 +129,10 @@ impl GlassRenderer {
             let groups =
                 [frame.camera.width.div_ceil(8), rows.min(frame.camera.height - first_row).div_ceil(8), 1];
             gpu.submit(&[self.kernel.dispatch(&bindings, groups)])?;
-            // One submission at a time: software drivers queue without end.
-            gpu.wait()?;
+            if gpu.adapter().is_software() {
+                // One submission at a time: software drivers queue without end.
+                gpu.wait()?;
+            }
         }
         let seen = gpu.read::<[f32; 4]>(&made)?.into_iter().map(|[r, g, b, _]| [r, g, b]).collect();
         pool.give_back(MADE, made);

@@ -122,6 +122,8 @@ impl OnGpu {
         let Some(PaneView { glass, environment, glow, camera }) = through else {
             return Ok(Painted::OnItsWay { read: Box::new(drawn.begin_read()?), through_glass: None });
         };
+        // The passes before it have times of their own.
+        self.gpu.wait()?;
         let begin = Instant::now();
         let behind = drawn.behind_glass();
         let environment =
