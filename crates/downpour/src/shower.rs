@@ -119,10 +119,9 @@ impl Shower {
         let law = rain.sizes()?;
         // The papers' drag has no closed form.
         let relaxes = rain.drag == RainDrag::Relaxation;
-        // Layers need a rain, but no drops.
-        let has_layers = rain.layers.is_some();
         let is_closed = match (rain.volume, weather.wind.uniform()) {
-            _ if has_layers => true,
+            // Layers need a rain, but no drops.
+            _ if rain.layers.is_some() => true,
             (RainVolume::Auto, Some(_)) if relaxes => true,
             (RainVolume::ClosedForm, Some(_)) if !relaxes => return Err(ShowerError::DragByStep),
             (RainVolume::ClosedForm, Some(_)) => true,
