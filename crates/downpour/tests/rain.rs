@@ -12,6 +12,7 @@ use downpour::rain::{
 use downpour::render::camera::{EyeMotion, Viewpoint};
 use downpour::render::light::LightSource;
 use downpour::trace::data::SceneData;
+use downpour::weather::Look;
 use glam::Vec3;
 
 const SIZE: [u32; 2] = [160, 90];
@@ -518,6 +519,32 @@ fn few_pixels_find_the_light_of_lamps_for_all() {
     }
 }
 
+/// Rain that is twice as visible before a lamp adds twice the light, longer streaks add as much, and rain of visibility 0 adds none.
+#[test]
+fn a_host_makes_rain_more_visible() {
+    let Some(gpu) = device() else { return };
+    let host = Host::new(&gpu, SIZE, wgpu::TextureFormat::Rgba16Float);
+    let lamp = LightSource::Point {
+        radius: 0.0,
+        position: Vec3::new(1.0, 3.0, -8.0),
+        intensity: Vec3::splat(2.0e4),
+        range: 0.0,
+    };
+    let some = || RainSettings { rate_mm_h: 20.0, ..settings() };
+    let mut rain = Rain::new(gpu.device(), gpu.queue(), RainSettings { rate_mm_h: 0.0, ..some() }).unwrap();
+    let dry = host.rain(&mut rain, &view(), f32::INFINITY, &[lamp]).unwrap();
+    let mut drawn = |visibility, streak_length| {
+        rain.set_settings(RainSettings { look: Look { visibility, streak_length }, ..some() }).unwrap();
+        host.rain(&mut rain, &view(), f32::INFINITY, &[lamp]).unwrap()
+    };
+    assert!(drawn(0.0, 1.0) == dry);
+    let [one, two, long] = [(1.0, 1.0), (2.0, 1.0), (1.0, 3.0)]
+        .map(|(visibility, length)| mean(&drawn(visibility, length)) - mean(&dry));
+    println!("{one}, {two}, {long}");
+    assert!(one > 0.0 && (two / one - 2.0).abs() < 0.1, "{one}, {two}");
+    assert!((long / one - 1.0).abs() < 0.1, "{one}, {long}");
+}
+
 #[test]
 fn bad_input_is_an_error_and_leaves_the_rain_as_it_was() {
     let Some(gpu) = device() else { return };
@@ -533,6 +560,11 @@ fn bad_input_is_an_error_and_leaves_the_rain_as_it_was() {
         refused(RainSettings { ray_spacing: 5, ..settings() }),
         "spacing of rays is 5; allowed: 1 to 4"
     );
+    for look in
+        [Look { visibility: 21.0, ..Look::PHYSICAL }, Look { streak_length: f64::NAN, ..Look::PHYSICAL }]
+    {
+        assert!(refused(RainSettings { look, ..settings() }).contains("allowed: 0 to 20"));
+    }
     let mut rain = Rain::new(gpu.device(), gpu.queue(), settings()).unwrap();
     let host = Host::new(&gpu, SIZE, wgpu::TextureFormat::Rgba16Float);
     let first = host.rain(&mut rain, &view(), 6.0, &[]).unwrap();
