@@ -66,7 +66,7 @@ fn layers_take_out_what_the_drops_there_do() {
     }
 }
 
-/// A layer falls over the picture as fast as rain at its distance would: a picture is like that of a moment before, moved down.
+/// A layer falls over the picture as fast as a drop at its distance would: a picture is like that of a moment before, moved down.
 #[test]
 fn layers_fall_with_the_rain() {
     // All layers are 1 to 1.1 m away; a pixel is 6 mm there.
@@ -80,8 +80,24 @@ fn layers_fall_with_the_rain() {
         pairs.map(|(a, b)| f64::from((a - b).abs())).sum::<f64>() / f64::from(120 - rows as u32)
     };
     let best = (0..30).min_by(|&a, &b| alike(a).total_cmp(&alike(b))).unwrap();
-    // The effective drop of 60 mm/h has 1.7 mm and falls 5.9 m/s.
+    // 6 cm.
     println!("{best} rows");
     assert!((8..=10).contains(&best), "{best}");
     assert!(at(1.0) == first);
+}
+
+/// In gusts and in a rain whose rate changes, layers go on falling from picture to picture.
+#[test]
+fn layers_do_not_jump() {
+    let rest = "rate_mm_h = [[40, 60], [41, 90]]\n[layers]\nparallax = 1.1\n[look]\nvisibility = 20\nstreak_length = 0.2\n\
+                [[wind]]\nuniform = { speed_m_s = [[40, 0], [41, 0.2]], towards_deg = 90 }";
+    let mut renderer = renderer(rest, [160, 120]);
+    let [first, later] = [40.0, 40.01].map(|time_s| transmittances(&renderer.frame(time_s).unwrap()));
+    let alike = |rows: usize| {
+        let pairs = first.iter().zip(&later[rows * 160..]);
+        pairs.map(|(a, b)| f64::from((a - b).abs())).sum::<f64>() / f64::from(120 - rows as u32)
+    };
+    let best = (0..30).min_by(|&a, &b| alike(a).total_cmp(&alike(b))).unwrap();
+    println!("{best} rows");
+    assert!((8..=10).contains(&best), "{best}");
 }

@@ -3,7 +3,7 @@
 // at w = p r of the range of parallax p, and the texture of streaks is looked up in its scale. A streak's normal is looked up in a
 // coarser level the faster the rain is; it refracts and mirrors what is around the eye and the light of lamps, with
 // f = 0.95 (1 - n . v)^4 + 0.05, and is mixed with white (their milk).
-// Here distances are meters, and the speed and the amount of rain are those of the weather.
+// Here distances are meters, and the direction and the amount of rain are those of the weather.
 // Twin: downpour_render::rain::layers.
 
 // A lamp: its place relative to the eye, or the direction to it if its light is parallel.

@@ -7,9 +7,10 @@
 //! is; it refracts and mirrors what is around the eye and the light of lamps (unhidden, as in the paper), with `f = 0.95 (1 - n . v)^4 + 0.05`, and is
 //! mixed with white, as milk in water is for a film.
 //!
-//! Where the paper leaves numbers to an artist, here they are the weather's: the direction and the speed are those of the mean drop as the
-//! eye sees it, the length of streaks is what it falls while the shutter is open, and the opacity is as much in the mean as drops
-//! take out between the nearest and the farthest layer. Distances are meters. Both textures are made here.
+//! Where the paper leaves numbers to an artist, here they are the weather's: the direction is that of the mean drop as the eye sees it, the
+//! speed that of a drop of 1.8 mm in any rain (one that changed would move all that has fallen so far), the length of streaks is what that
+//! falls while the shutter is open, and the opacity is as much in the mean as drops take out between the nearest and the farthest layer.
+//! Distances are meters. Both textures are made here.
 //!
 //! What it is not: drops do not end at roofs, and the number of streaks is the same in any rain. Flashes of lightning light the layers as
 //! any lamp does, in place of the paper's factors.
@@ -42,6 +43,9 @@ const LENGTH_M: f32 = 0.12;
 
 /// Levels by which the normals of the nearest layer are coarser at 9 m/s.
 const DISTORTION: f32 = 2.0;
+
+/// Speed at which layers fall, m/s.
+const SPEED: f64 = 6.0;
 
 /// Speed of the fastest drops, m/s.
 const FASTEST: f64 = 9.0;
@@ -105,10 +109,9 @@ impl LayersFrame {
         let velocity = medium.velocity() - exposure.eye.velocity;
         let on_picture = [camera.right, camera.up].map(|axis| velocity.dot(axis.normalize_or_zero()));
         let on_picture = Vec2::from(on_picture);
-        let speed = f64::from(on_picture.length());
         let fall = on_picture.try_normalize().unwrap_or(Vec2::NEG_Y);
-        let stretch = (speed * exposure.drops_s() / f64::from(LENGTH_M)).clamp(0.125, 32.0);
-        let way = speed * exposure.time_s;
+        let stretch = (SPEED * exposure.drops_s() / f64::from(LENGTH_M)).clamp(0.125, 32.0);
+        let way = SPEED * exposure.time_s;
         let (periods, rows) = (way / stretch, way / PLACES_M);
         // As much as drops take out in the mean.
         let range = f64::from(LAYERS_NEAREST) * (layers.parallax - 1.0);
@@ -126,7 +129,7 @@ impl LayersFrame {
             parallax: layers.parallax as f32,
             milk: layers.milk as f32,
             stretch: stretch as f32,
-            distortion: DISTORTION * (speed / FASTEST).min(1.0) as f32,
+            distortion: DISTORTION * (f64::from(velocity.length()) / FASTEST).min(1.0) as f32,
             unused: 0,
             lamps: [LayersLamp::default(); LAYERS_LAMPS as usize],
         })
