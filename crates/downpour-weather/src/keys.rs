@@ -2,10 +2,10 @@
 
 use super::camera::CameraKeys;
 use super::lamps::LampKeys;
-use super::look::LookKeys;
+use super::look::{LookKeys, drop_exposure_s};
 use super::rain::most;
 use super::sky::{SkyKeys, SunKeys};
-use super::{Look, MAX_EXPOSURE_S, PuddleFill, PuddleShape, Rain, Weather, WetnessAt};
+use super::{Look, PuddleFill, PuddleShape, Rain, Weather, WetnessAt};
 use downpour_wind::Keyed;
 use std::borrow::Cow;
 
@@ -137,18 +137,17 @@ impl Weather {
         self.keys.look.as_ref().map_or(self.look, |keys| self.look.at(keys, time_s))
     }
 
-    /// Time for which drops move in a picture at a time in seconds, s, at most [`MAX_EXPOSURE_S`]: that of the shutter or of the
-    /// persistence, times the length of streaks.
+    /// Time for which drops move in a picture at a time in seconds, s: [`drop_exposure_s`] of the shutter's or the persistence's.
     #[must_use]
     pub fn drop_exposure_s(&self, time_s: f64) -> f64 {
-        (self.camera.shutter * self.look_at(time_s).streak_length).min(MAX_EXPOSURE_S)
+        drop_exposure_s(self.camera.shutter, self.look_at(time_s).streak_length)
     }
 
     /// The longest [`Weather::drop_exposure_s`] of any time, s.
     #[must_use]
     pub fn longest_drop_exposure_s(&self) -> f64 {
         let keys = self.keys.look.as_ref().and_then(|keys| keys.streak_length.as_ref());
-        (self.camera.shutter * keys.map_or(self.look.streak_length, most)).min(MAX_EXPOSURE_S)
+        drop_exposure_s(self.camera.shutter, keys.map_or(self.look.streak_length, most))
     }
 
     /// The rain at a time in seconds.

@@ -73,7 +73,7 @@ pub use lightning::{
     Stroke, StrokePulse,
 };
 pub use load::{Loaded, Reloaded, Roots, lamps_at, load};
-pub use look::Look;
+pub use look::{Look, drop_exposure_s};
 pub use models::{Model, Repeat};
 pub use pane_map::PaneMap;
 pub use presets::PRESETS;

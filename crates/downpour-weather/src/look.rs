@@ -4,6 +4,7 @@ use downpour_scene::error::SceneError;
 use downpour_wind::Keyed;
 use serde::Deserialize;
 
+use super::MAX_EXPOSURE_S;
 use super::fault::Positions;
 use super::quantity::{StreakLength, Visibility};
 use super::wind::keys::NumberKeys;
@@ -21,6 +22,12 @@ pub struct Look {
 impl Look {
     /// What physics gives.
     pub const PHYSICAL: Self = Self { visibility: 1.0, streak_length: 1.0 };
+}
+
+/// Time for which drops move in a picture, s, at most [`MAX_EXPOSURE_S`]: that of the shutter, times the length of streaks.
+#[must_use]
+pub fn drop_exposure_s(shutter_s: f64, streak_length: f64) -> f64 {
+    (shutter_s * streak_length).clamp(0.0, MAX_EXPOSURE_S)
 }
 
 impl Default for Look {

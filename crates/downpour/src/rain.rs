@@ -27,6 +27,7 @@ use downpour_trace::data::{RenderFrame, SceneData};
 use downpour_trace::frame_scene::{MAX_LIGHTS, view_of};
 use downpour_trace::gpu::SceneOnGpu;
 use downpour_trace::scene::SceneView;
+use downpour_weather::drop_exposure_s;
 use glam::{DVec3, Vec3};
 
 use crate::shower::{drops_among, fall_speed, splashes};
@@ -343,7 +344,7 @@ impl Rain {
 
     fn view(&self, view: &RainView, size: [u32; 2]) -> Result<View, RainError> {
         let depth = [self.settings.near_m, self.settings.far_m];
-        let shutter_s = view.shutter_s * self.settings.look.streak_length;
+        let shutter_s = drop_exposure_s(view.shutter_s, self.settings.look.streak_length);
         let seen = view_of(&view.camera, DVec3::ZERO, size, depth, shutter_s, &view.motion)?;
         // Room for a quarter more is kept.
         Ok(View { max_drops: self.settings.max_drops.min(self.most_drops / 5 * 4), ..seen })

@@ -420,11 +420,13 @@ impl Renderer {
             return Ok(frame_scene);
         }
         told(Progress { what: "rain on puddles and glass", parts: [0; 2] });
-        let field = Arc::clone(self.shower.on_water());
+        let field = self.shower.on_water().cloned();
         let water = self.water_at(time_s)?;
         if let Some(ground) = &mut water.ground {
             ground.advance(time_s)?;
-            ground.find_rings(&field, &frame_scene, time_s)?;
+            if let Some(field) = &field {
+                ground.find_rings(field, &frame_scene, time_s)?;
+            }
         }
         if let Some(pane) = &mut water.pane {
             rain_on(pane, time_s, told)?;

@@ -92,8 +92,8 @@ pub struct Shower {
     splashes: Option<SplashOptions>,
     dripping: Option<Dripping>,
     form: Form,
-    /// The rain in closed form, in the uniform wind: that of the drops, unless they go step by step.
-    on_water: Arc<RainField>,
+    /// The rain in closed form, in the uniform wind: that of the drops or, for puddles, one beside drops that go step by step.
+    on_water: Option<Arc<RainField>>,
     /// The last medium of a rain that does not change.
     last: Arc<Mutex<Option<LastMedium>>>,
 }
@@ -129,11 +129,11 @@ impl Shower {
             _ if weather.keys.rate().is_some() => return Err(ShowerError::RateByStep),
             _ => false,
         };
-        let on_water = Arc::new(closed(&law, weather)?);
-        let form = if is_closed {
-            Form::Closed(Arc::clone(&on_water))
-        } else {
-            Form::Stepped(Box::new(Stepped::new(law.clone(), weather)))
+        let has_field = is_closed || !weather.puddles.is_empty();
+        let on_water = has_field.then(|| closed(&law, weather).map(Arc::new)).transpose()?;
+        let form = match &on_water {
+            Some(field) if is_closed => Form::Closed(Arc::clone(field)),
+            _ => Form::Stepped(Box::new(Stepped::new(law.clone(), weather))),
         };
         let (dripping, splashes) = (Dripping::new(weather)?, splashes(&weather.splashes, &weather.rain.air)?);
         let last = Arc::default();
@@ -213,10 +213,10 @@ impl Shower {
 
     /// The rain in closed form whose drops make rings on puddles: that of the picture, or of drops that go step by step one of the same
     /// rate, sizes and seed in the uniform part of their wind. (Drops of a view are followed where the picture shows them; rings
-    /// last longer, and are wanted where the eye has only just turned.)
+    /// last longer, and are wanted where the eye has only just turned.) `None` for drops that go step by step where no puddle is.
     #[must_use]
-    pub fn on_water(&self) -> &Arc<RainField> {
-        &self.on_water
+    pub fn on_water(&self) -> Option<&Arc<RainField>> {
+        self.on_water.as_ref()
     }
 
     /// True if a picture of any time can be made by itself, and is the same as among others. If not, pictures of a clip are
@@ -244,7 +244,8 @@ impl Shower {
     ) -> Result<VisibleDrops, ShowerError> {
         let mut visible = match &mut self.form {
             Form::Closed(field) => {
-                let view = drops_view(&self.weather.rain, frame_scene, self.weather.rain.max_drops)?;
+                let view = View { max_drops: self.weather.rain.max_drops, ..frame_scene.view()? };
+                let view = drops_view(&self.weather.rain, view);
                 let obstacles = obstacles(frame_scene);
                 let impacts = (self.splashes.as_ref(), Some(&self.bounce));
                 drops_among(field, &obstacles, &view, time_s, impacts)?
@@ -291,11 +292,11 @@ impl Shower {
     ) -> Result<ShowerView, ShowerError> {
         // Room for a quarter more is kept.
         let max_drops = self.weather.rain.max_drops.min(max_room / 5 * 4);
-        let view = drops_view(&self.weather.rain, frame_scene, max_drops)?;
+        let of_drips = View { max_drops, ..frame_scene.view()? };
+        let view = drops_view(&self.weather.rain, of_drips);
         let resolved = field.resolved(&view, time_s, max_room)?;
         let least = resolved.least_pixels;
         let obstacles = obstacles(frame_scene);
-        let of_drips = View { max_drops, ..frame_scene.view()? };
         let mut droplets =
             self.drips(frame_scene, &of_drips, drips_least(&self.weather.rain, &resolved), time_s)?;
         #[cfg(feature = "wgpu")]
@@ -487,9 +488,8 @@ pub(crate) fn drops_among(
 const NONE_PIXELS: f64 = 1.0e9;
 
 /// The view of a picture, for the drops of a rain that is drawn drop by drop; one without drops for layers.
-fn drops_view(rain: &Rain, frame_scene: &FrameScene, max_drops: u32) -> Result<View, ShowerError> {
-    let view = View { max_drops, ..frame_scene.view()? };
-    Ok(if rain.layers.is_some() { View { least_pixels: NONE_PIXELS, ..view } } else { view })
+fn drops_view(rain: &Rain, view: View) -> View {
+    if rain.layers.is_some() { View { least_pixels: NONE_PIXELS, ..view } } else { view }
 }
 
 /// Least diameter on the picture, pixels, of drops that drip.

@@ -29,6 +29,15 @@ fn transmittances(frame: &Frame) -> Vec<f32> {
     frame.picture.rain.iter().map(|pixel| pixel[3]).collect()
 }
 
+/// Rows by which a picture of 160 x 120 pixels is most like that of a moment before.
+fn rows_fallen(first: &[f32], later: &[f32]) -> usize {
+    let apart = |rows: usize| {
+        let pairs = first.iter().zip(&later[rows * 160..]);
+        pairs.map(|(a, b)| f64::from((a - b).abs())).sum::<f64>() / f64::from(120 - rows as u32)
+    };
+    (0..30).min_by(|&a, &b| apart(a).total_cmp(&apart(b))).unwrap()
+}
+
 /// Before an even sky layers cannot be seen: what they take out they show. Without drops there is nothing else.
 #[test]
 fn layers_vanish_in_even_light() {
@@ -75,11 +84,7 @@ fn layers_fall_with_the_rain() {
         transmittances(&frame(look, [160, 120], time_s))
     };
     let (first, later) = (at(1.0), at(1.01));
-    let alike = |rows: usize| {
-        let pairs = first.iter().zip(&later[rows * 160..]);
-        pairs.map(|(a, b)| f64::from((a - b).abs())).sum::<f64>() / f64::from(120 - rows as u32)
-    };
-    let best = (0..30).min_by(|&a, &b| alike(a).total_cmp(&alike(b))).unwrap();
+    let best = rows_fallen(&first, &later);
     // 6 cm.
     println!("{best} rows");
     assert!((8..=10).contains(&best), "{best}");
@@ -93,11 +98,7 @@ fn layers_do_not_jump() {
                 [[wind]]\nuniform = { speed_m_s = [[40, 0], [41, 0.2]], towards_deg = 90 }";
     let mut renderer = renderer(rest, [160, 120]);
     let [first, later] = [40.0, 40.01].map(|time_s| transmittances(&renderer.frame(time_s).unwrap()));
-    let alike = |rows: usize| {
-        let pairs = first.iter().zip(&later[rows * 160..]);
-        pairs.map(|(a, b)| f64::from((a - b).abs())).sum::<f64>() / f64::from(120 - rows as u32)
-    };
-    let best = (0..30).min_by(|&a, &b| alike(a).total_cmp(&alike(b))).unwrap();
+    let best = rows_fallen(&first, &later);
     println!("{best} rows");
     assert!((8..=10).contains(&best), "{best}");
 }

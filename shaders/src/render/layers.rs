@@ -2,6 +2,7 @@
 
 use super::camera::CAMERA;
 use super::rain::{DROPS_CAPTURE, DROPS_FRAME};
+use crate::drop::optics::OPTICS;
 use crate::{Kernel, Module};
 
 /// Every module of this file.
@@ -36,7 +37,7 @@ shared_constants! {
 pub static LAYERS: Module = Module {
     path: "render/layers.wgsl",
     wgsl: include_str!("../../wgsl/render/layers.wgsl"),
-    uses: &[&LAYERS_CONSTANTS, &CAMERA, &DROPS_FRAME, &DROPS_CAPTURE],
+    uses: &[&LAYERS_CONSTANTS, &OPTICS, &CAMERA, &DROPS_FRAME, &DROPS_CAPTURE],
 };
 
 /// One invocation per pixel.

@@ -89,10 +89,7 @@ fn layers_fresnel(cosine: f32) -> f32 {
 
 // The way of light that a streak shows, into water, for a ray of a direction and a normal toward the viewer.
 fn layers_refracted(direction: vec3f, normal: vec3f) -> vec3f {
-    let ratio = 1.0 / LAYERS_INDEX;
-    let cosine = -dot(direction, normal);
-    let within = sqrt(max(1.0 - ratio * ratio * (1.0 - cosine * cosine), 0.0));
-    return direction * ratio + normal * (ratio * cosine - within);
+    return optics_refract(direction, normal, 1.0 / LAYERS_INDEX).xyz;
 }
 
 // The fourth power of a cosine, 0 if it is below 0.
@@ -156,7 +153,7 @@ fn layers_pixel(x: u32, y: u32, scene: f32) -> vec4f {
     let normal = leaning / sqrt(dot(leaning, leaning));
     let cosine = -dot(direction, normal);
     let fresnel = layers_fresnel(cosine);
-    let mirrored = direction + normal * (2.0 * cosine);
+    let mirrored = optics_reflect(direction, normal);
     let refracted = layers_refracted(direction, normal);
     var seen = drops_capture_about(direction, refracted, LAYERS_WIDTH) * (1.0 - fresnel)
         + drops_capture_about(direction, mirrored, LAYERS_WIDTH) * fresnel;

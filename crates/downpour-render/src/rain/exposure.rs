@@ -2,9 +2,9 @@
 
 use downpour_drop::oscillation::{Amplitudes, Fluids};
 use downpour_shaders::render::rain::{STREAK_REFRACTED, STREAK_WHITE};
-use downpour_weather::{Observer, StreakLook, Weather};
+use downpour_weather::{Observer, StreakLook, Weather, drop_exposure_s};
 
-use crate::camera::{EyeMotion, MAX_EXPOSURE_S};
+use crate::camera::EyeMotion;
 
 /// Maximum number of samples along the chord of a streak.
 pub const MAX_STREAK_SAMPLES: u32 = 4096;
@@ -57,7 +57,7 @@ impl TemporalResponse {
 /// Exposure of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exposure {
-    /// Exposure time, s, 0 (drops stand still) to [`MAX_EXPOSURE_S`]; half of it is before
+    /// Exposure time, s, 0 (drops stand still) to [`MAX_EXPOSURE_S`](crate::camera::MAX_EXPOSURE_S); half of it is before
     /// the time of the picture.
     pub shutter_s: f64,
     /// Multiple of that time for which drops move: 1 is what physics gives, more has longer and fainter streaks.
@@ -85,10 +85,10 @@ pub struct Exposure {
 }
 
 impl Exposure {
-    /// Time for which drops move, s, at most [`MAX_EXPOSURE_S`].
+    /// Time for which drops move, s: [`drop_exposure_s`].
     #[must_use]
     pub fn drops_s(&self) -> f64 {
-        (self.shutter_s * self.streak_length).clamp(0.0, MAX_EXPOSURE_S)
+        drop_exposure_s(self.shutter_s, self.streak_length)
     }
 
     /// Returns the exposure of a weather, for a picture at `time_s` with a moving eye.

@@ -18,7 +18,9 @@
 use std::cmp::Reverse;
 use std::sync::LazyLock;
 
+use downpour_drop::optics::{optics_reflect, optics_refract};
 use downpour_math::ops;
+use downpour_math::pyramid::{PyramidRounding, pyramid};
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_shaders::render::layers::{
     LAYERS_COLUMNS, LAYERS_INDEX, LAYERS_LAMPS, LAYERS_LEVELS, LAYERS_NEAREST, LAYERS_PLACES, LAYERS_SIZE,
@@ -261,7 +263,7 @@ impl LayersView<'_> {
         let normal = leaning / leaning.dot(leaning).sqrt();
         let cosine = -direction.dot(normal);
         let fresnel = layers_fresnel(cosine);
-        let mirrored = direction + normal * (2.0 * cosine);
+        let mirrored = optics_reflect(direction.to_array(), normal.to_array()).into();
         let refracted = layers_refracted(direction, normal);
         let about = |way| self.drops.drops_capture_about(direction, way, LAYERS_WIDTH);
         let mut seen = about(refracted) * (1.0 - fresnel) + about(mirrored) * fresnel;
@@ -284,10 +286,7 @@ pub fn layers_fresnel(cosine: f32) -> f32 {
 /// The way of light that a streak shows, into water, for a ray of a direction and a normal toward the viewer, both of length 1.
 #[must_use]
 pub fn layers_refracted(direction: Vec3, normal: Vec3) -> Vec3 {
-    let ratio = 1.0 / LAYERS_INDEX;
-    let cosine = -direction.dot(normal);
-    let within = (1.0 - ratio * ratio * (1.0 - cosine * cosine)).max(0.0).sqrt();
-    direction * ratio + normal * (ratio * cosine - within)
+    optics_refract(direction.to_array(), normal.to_array(), 1.0 / LAYERS_INDEX).0.into()
 }
 
 /// The fourth power of a cosine, 0 if it is below 0.
@@ -354,7 +353,7 @@ fn texture() -> Texture {
     let mut words: Vec<u32> = (0..LAYERS_PLACES * LAYERS_PLACES).map(place).collect();
     let size = LAYERS_SIZE as usize;
     // Opacity, and how the surface leans: flat where there is no streak.
-    let mut finest = vec![Vec3::new(0.0, 0.5, 0.5); size * size];
+    let mut finest = vec![[0.0f32, 0.5, 0.5]; size * size];
     let [half, long] = [HALF_WIDTH_M, 0.5 * LENGTH_M].map(|meters| meters * LAYERS_SIZE as f32);
     for id in 0..STREAKS {
         let [x, y, faint, thin] = number(id, 1);
@@ -373,30 +372,17 @@ fn texture() -> Texture {
                 let opacity = strength * ops::exp(-across * across) * end;
                 let [column, row] = [at.x, at.y].map(|n| (n as i32).rem_euclid(LAYERS_SIZE as i32) as usize);
                 let texel = &mut finest[row * size + column];
-                if opacity > texel.x {
+                if opacity > texel[0] {
                     let lean = Vec2::new(0.8 * across.clamp(-1.0, 1.0), 0.4 * along) * 0.5 + 0.5;
-                    *texel = Vec3::new(opacity, lean.x, lean.y);
+                    *texel = [opacity, lean.x, lean.y];
                 }
             }
         }
     }
-    let mut level = finest;
-    let mut edge = size;
-    let opacity = level.iter().map(|texel| texel.x).sum::<f32>() / (size * size) as f32;
-    loop {
-        words.extend(level.iter().map(|&texel| packed(texel)));
-        if edge == 1 {
-            return Texture { words, opacity };
-        }
-        let half = edge / 2;
-        let at = |x: usize, y: usize| level[y * edge + x];
-        let mean = |k: usize| {
-            let (x, y) = (k % half * 2, k / half * 2);
-            (at(x, y) + at(x + 1, y) + at(x, y + 1) + at(x + 1, y + 1)) * 0.25
-        };
-        level = (0..half * half).map(mean).collect();
-        edge = half;
-    }
+    let opacity = finest.iter().map(|texel| texel[0]).sum::<f32>() / (size * size) as f32;
+    pyramid(&mut finest, [LAYERS_SIZE; 2], PyramidRounding::Down);
+    words.extend(finest.into_iter().map(|texel| packed(texel.into())));
+    Texture { words, opacity }
 }
 
 #[cfg(test)]
