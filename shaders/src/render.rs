@@ -17,6 +17,7 @@ pub mod refine;
 pub mod scatter;
 pub mod scene;
 pub mod specimen;
+pub mod spray;
 pub mod table;
 pub mod tone;
 pub mod wet;

@@ -25,6 +25,7 @@ use downpour_render::rain::light::DropLightFrame;
 use downpour_render::rain::medium::{MediumFrame, MediumShell};
 use downpour_render::rain::profiles::ProfilesFrame;
 use downpour_render::rain::project::ProjectFrame;
+use downpour_render::rain::spray::SprayFrame;
 use downpour_render::rain::tiles::TilesFrame;
 use downpour_render::rain::{DropsFrame, ScreenDrop, StreakPath, StreakRay};
 use downpour_render::tone::ToneFrame;
@@ -109,6 +110,8 @@ fn hosts() -> Vec<Host> {
         host!(LayersLamp as "LayersLamp" in &render::layers::LAYERS, place, is_parallel, color, unused),
         host!(LayersFrame as "LayersFrame" in &render::layers::LAYERS,
             fall, moved, row_part, row, count, strength, parallax, milk, stretch, distortion, unused, lamps),
+        host!(SprayFrame as "SprayFrame" in &render::spray::SPRAY_FRAME,
+            levels, lean, extinction, height, eye, top, rise, unused),
         host!(EyeDrop as "EyeDrop" in &sim::field::EYE_DROP,
             offset, diameter, velocity, id, present, speed, id_low),
         host!(FieldClass as "FieldClass" in &sim::field::FIELD,

@@ -351,6 +351,15 @@ impl DropSizeDistribution {
         }
     }
 
+    /// Rate, m/s, of the water of which a drop of each diameter (m) and fall speed (m/s) gives a share.
+    pub(crate) fn rate_of_share(&self, mut share: impl FnMut(f64, f64) -> f64) -> f64 {
+        PI / 6.0
+            * self.integrate(|d| {
+                let speed = self.speed.unchecked(d);
+                cube(d) * speed * share(d, speed)
+            })
+    }
+
     fn integrate(&self, mut f: impl FnMut(f64) -> f64) -> f64 {
         // Dry: the law's shape has no effect, not even by an overflow.
         if self.scale > 0.0 {

@@ -2,7 +2,7 @@
 //!
 //! One drop: its [`shape`] and [`axis_ratio`], its [`mesh`], its [`fall_speed`], its [`oscillation`], its
 //! [`optics`]; drops that leave an edge ([`drip`]) and their [`splash`]. Many drops: their size [`distribution`], computed from a
-//! rain rate, and the [`wetness`] of what they fall on. The
+//! rain rate, the [`spray`] that they throw up, and the [`wetness`] of what they fall on. The
 //! media: [`water`] and [`air`].
 //!
 //! Units are SI: meters, seconds, kilograms, radians, pascals; temperatures in degrees Celsius where the name says
@@ -32,6 +32,7 @@ pub mod optics;
 pub mod oscillation;
 pub mod shape;
 pub mod splash;
+pub mod spray;
 pub mod water;
 pub mod wetness;
 

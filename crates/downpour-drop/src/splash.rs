@@ -67,6 +67,12 @@ impl SplashLaw {
         })
     }
 
+    /// Depth of the film, m.
+    #[must_use]
+    pub fn film_m(&self) -> f64 {
+        self.film_m
+    }
+
     /// Splash parameter `K` of a drop of a diameter in m that meets a surface with a speed toward it in m/s.
     ///
     /// ```

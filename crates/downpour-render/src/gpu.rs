@@ -11,6 +11,7 @@ mod plate;
 mod project;
 mod rain;
 mod refine;
+mod spray;
 #[cfg(not(feature = "parity"))]
 pub(crate) mod tiles;
 #[cfg(feature = "parity")]

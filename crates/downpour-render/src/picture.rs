@@ -238,6 +238,9 @@ pub fn rain_layer(
     let medium = timed(passes, "unresolved", || rain.medium_light(&lights).layer(pixels));
     let mut layer =
         timed(passes, "drops", || rain.layer(pixels, masks, environment, &table, &light, &medium));
+    if let Some(frame) = &rain.spray {
+        timed(passes, "spray", || rain.add_spray(frame, &lights, (pixels, environment, &table), &mut layer));
+    }
     if let Some(layers) = rain.layers {
         let layers = layers.lit(camera.eye, lighting);
         timed(passes, "layers", || layers.before(&rain.frame, pixels, environment, &mut layer));

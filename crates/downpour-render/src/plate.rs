@@ -29,6 +29,9 @@ pub trait Lighting: Debug + Sync {
     /// True if anything is in the way from a point along a unit direction.
     fn is_covered(&self, point: Vec3, direction: Vec3) -> bool;
 
+    /// Distance in meters of the first surface from a point along a unit direction: what lets light through is one, a hole is not.
+    fn first_surface(&self, point: Vec3, direction: Vec3) -> Option<f32>;
+
     /// True if there are no obstacles at all.
     fn is_open(&self) -> bool;
 

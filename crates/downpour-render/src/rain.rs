@@ -7,7 +7,8 @@
 //! 5. [`StreakTable`]: what drops that move while the shutter is open show on the mean, made once per frame: a profile of each
 //!    streak that is wider than a pixel ([`StreakProfiles`]), a mean for the others;
 //! 6. [`medium`]: drops that are not drawn one by one, with the light of lamps on them;
-//! 7. [`drops`]: pixel by pixel, what drops and streaks show of it.
+//! 7. [`drops`]: pixel by pixel, what drops and streaks show of it;
+//! 8. [`spray`]: droplets over what the rain hits, behind all of these.
 //!
 //! Source: Rousseau, Jolivet, Ghazanfarpour 2006, sections 4 and 5; Rousseau 2008, section 2.2.3. Where the default
 //! differs it is said at [`RefractionForm`] and [`StreakSamples`].
@@ -22,6 +23,7 @@ mod drops_capture;
 mod drops_frame;
 mod drops_glint;
 mod drops_mask;
+mod drops_medium;
 mod drops_shade;
 mod environment;
 pub mod exposure;
@@ -52,6 +54,7 @@ pub mod project;
 
 mod shapes;
 mod splash;
+pub mod spray;
 #[cfg(not(feature = "parity"))]
 pub(crate) mod streak;
 #[cfg(feature = "parity")]
@@ -80,6 +83,7 @@ pub mod tiles;
 mod truth;
 mod weather;
 
+use downpour_drop::spray::Spray;
 use downpour_shaders::render::rain::{DROPS_DIRECTION, DROPS_SHIFT};
 use downpour_weather::{RainLayers, RainRefraction};
 
@@ -156,6 +160,8 @@ pub struct RainOptions {
     pub visibility: f64,
     /// Layers of a texture before the picture, in place of drops.
     pub layers: Option<RainLayers>,
+    /// Spray over what the rain hits, of extinction 0 or more.
+    pub spray: Option<Spray>,
 }
 
 impl Default for RainOptions {
@@ -170,6 +176,7 @@ impl Default for RainOptions {
             light: DropLightOptions { glints: GLINTS, ..DropLightOptions::default() },
             visibility: 1.0,
             layers: None,
+            spray: None,
         }
     }
 }

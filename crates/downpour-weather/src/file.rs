@@ -18,6 +18,7 @@ use super::rain::{self, Rain, RainTable};
 use super::ripples::RipplesTable;
 use super::sky::{Sky, SkyTable, SunSource, SunTable};
 use super::splashes::{Splashes, SplashesTable};
+use super::spray::{Spray, SprayTable};
 use super::streaks::StreaksTable;
 use super::wetness::{Wetness, WetnessTable};
 use super::wind::{self, GustsTable, TurbulenceTable, WindFieldTable, WindTable};
@@ -59,6 +60,7 @@ pub(super) struct Tables {
     ripples: RipplesTable,
     wetness: WetnessTable,
     splashes: SplashesTable,
+    spray: SprayTable,
     drips: DripsTable,
     drip: Vec<DripTable>,
     output: OutputTable,
@@ -113,6 +115,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         name: String::new(),
         wetness: Wetness::checked(&tables.wetness, &rain, &positions)?,
         splashes: Splashes::checked(&tables.splashes, &positions)?,
+        spray: Spray::checked(&tables.spray, &positions)?,
         drips: Drips::checked(&tables.drips, &tables.drip),
         lightning: Lightning::checked(&tables.lightning, &tables.flash, rain.seed, &positions)?,
         glass: tables.glass.map(|glass| glass.checked(&heaviest, is_still, &positions)).transpose()?,

@@ -46,6 +46,7 @@ mod ripples;
 mod schema;
 mod sky;
 mod splashes;
+mod spray;
 mod streaks;
 mod wetness;
 mod wind;
@@ -87,6 +88,7 @@ pub use ripples::Waves;
 pub use schema::json_schema;
 pub use sky::{Sky, SkySource, SunSource};
 pub use splashes::Splashes;
+pub use spray::Spray;
 pub use streaks::{StreakLook, Streaks};
 pub use wetness::{RAINED_S, Wetness, WetnessAt};
 pub use wind::WindBox;
@@ -178,6 +180,8 @@ pub struct Weather {
     pub wetness: Wetness,
     /// Splashes where drops hit surfaces.
     pub splashes: Splashes,
+    /// Mist of droplets over what rain hits.
+    pub spray: Spray,
     /// Water that drips from edges.
     pub drips: Drips,
     /// Width and height of the picture, in pixels.
@@ -210,6 +214,7 @@ impl Default for Weather {
             waves: Waves::Water,
             wetness: Wetness::default(),
             splashes: Splashes::default(),
+            spray: Spray::default(),
             drips: Drips::default(),
             size: [1280, 720],
             keys: WeatherKeys::default(),

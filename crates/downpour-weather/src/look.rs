@@ -17,11 +17,13 @@ pub struct Look {
     pub visibility: f64,
     /// Length of streaks, 0 to 20: a multiple of the time for which drops move in a picture, whose light is then spread over it.
     pub streak_length: f64,
+    /// Extinction by spray, 0 to 20: a multiple of what its droplets take out. Visibility is another.
+    pub spray: f64,
 }
 
 impl Look {
     /// What physics gives.
-    pub const PHYSICAL: Self = Self { visibility: 1.0, streak_length: 1.0 };
+    pub const PHYSICAL: Self = Self { visibility: 1.0, streak_length: 1.0, spray: 1.0 };
 }
 
 /// Time for which drops move in a picture, s, at most [`MAX_EXPOSURE_S`]: that of the shutter, times the length of streaks.
@@ -41,6 +43,7 @@ impl Default for Look {
 pub(super) struct LookKeys {
     visibility: Option<Keyed<f64>>,
     pub(super) streak_length: Option<Keyed<f64>>,
+    spray: Option<Keyed<f64>>,
 }
 
 impl Look {
@@ -50,6 +53,7 @@ impl Look {
         Self {
             visibility: of(&keys.visibility, self.visibility),
             streak_length: of(&keys.streak_length, self.streak_length),
+            spray: of(&keys.spray, self.spray),
         }
     }
 }
@@ -58,7 +62,11 @@ impl LookKeys {
     /// The same without constant values.
     pub(super) fn moving(self) -> Option<Self> {
         let moving = |keyed: Option<Keyed<f64>>| keyed.filter(|keyed| keyed.keys().len() > 1);
-        let moving = Self { visibility: moving(self.visibility), streak_length: moving(self.streak_length) };
+        let moving = Self {
+            visibility: moving(self.visibility),
+            streak_length: moving(self.streak_length),
+            spray: moving(self.spray),
+        };
         (moving != Self::default()).then_some(moving)
     }
 }
@@ -70,15 +78,18 @@ impl LookKeys {
 pub(super) struct LookTable {
     visibility: Option<NumberKeys<Visibility>>,
     streak_length: Option<NumberKeys<StreakLength>>,
+    spray: Option<NumberKeys<Visibility>>,
 }
 
 impl LookTable {
     /// The multipliers of time 0, and over time.
     pub(super) fn checked(&self, positions: &Positions<'_>) -> Result<(Look, LookKeys), SceneError> {
         let (visibility, length) = (self.visibility.as_ref(), self.streak_length.as_ref());
+        let spray = self.spray.as_ref();
         let keys = LookKeys {
             visibility: visibility.map(|keys| keys.keyed("look.visibility", positions)).transpose()?,
             streak_length: length.map(|keys| keys.keyed("look.streak_length", positions)).transpose()?,
+            spray: spray.map(|keys| keys.keyed("look.spray", positions)).transpose()?,
         };
         Ok((Look::default().at(&keys, 0.0), keys))
     }

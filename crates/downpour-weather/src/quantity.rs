@@ -121,6 +121,8 @@ ranges! {
     StorageMm: 0.01, 10.0, "0.01 to 10 mm";
     FilmMm: 0.05, 10.0, "0.05 to 10 mm";
     SplashSize: 0.1, 10.0, "0.1 to 10";
+    SprayM: 0.005, 1.0, "0.005 to 1 m";
+    SprayDropletMm: 0.05, 1.0, "0.05 to 1 mm";
     DryingS: 1.0, 1e7, "1 to 1e7 s";
     DripsPerS: 0.001, 1000.0, "0.001 to 1000 drops per second";
     DripMm: 0.5, 6.4, "0.5 to 6.4 mm";

@@ -1,9 +1,13 @@
 //! `[splashes]` of the weather file.
 
-use downpour_weather::{Splashes, Weather};
+use downpour_weather::{Splashes, Spray, Weather};
 
 fn parsed(text: &str) -> Splashes {
     Weather::parse("rain.toml", text).expect("a weather").splashes
+}
+
+fn spray(text: &str) -> Spray {
+    Weather::parse("rain.toml", text).expect("a weather").spray
 }
 
 fn says(text: &str, expected: &str) {
@@ -19,6 +23,20 @@ fn drops_splash_unless_told_otherwise() {
     assert!(!parsed("[splashes]\nenabled = false").is_enabled);
     let given = parsed("[splashes]\nsize = 2\nfilm_mm = 0.25");
     assert_eq!((given.size, given.film_m), (2.0, 0.25e-3));
+}
+
+#[test]
+fn there_is_spray_where_it_is_asked_for() {
+    assert_eq!(spray(""), Spray { is_enabled: false, height_m: 0.05, droplet_m: 0.3e-3 });
+    assert_eq!(spray("[spray]\nenabled = false"), Spray::default());
+    let given = spray("[spray]\nenabled = true\nheight_m = 0.1\ndroplet_mm = 0.5");
+    assert_eq!(given, Spray { is_enabled: true, height_m: 0.1, droplet_m: 0.5e-3 });
+    says("[spray]\nheight_m = 0.1", "spray.height_m");
+    says("[spray]\nenabled = false\ndroplet_mm = 0.2", "spray.droplet_mm");
+    says("[spray]\nenabled = true\nheight_m = 2", "0.005 to 1 m");
+    says("[spray]\nenabled = true\ndroplet_mm = nan", "spray.droplet_mm");
+    says("[spray]\nenabled = true\nheigth_m = 0.1", "perhaps height_m");
+    says("[look]\nspray = 21", "look.spray");
 }
 
 #[test]

@@ -91,6 +91,7 @@ diffraction = false
 
 [look]
 visibility = 3
+spray = 4
 streak_length = 0.5
 
 [[model]]
@@ -232,7 +233,7 @@ fn an_empty_file_is_the_default() {
     assert_eq!((Camera::default().tone, Camera::default().edges), (ToneCurve::Hue, ToneEdges::ToneAware));
     let kawase = Glow { glare: 0.1, width: 2.0, filter: GlowFilter::Kawase, has_diffraction: false };
     assert_eq!((default.glow.glare, parse(ALL).unwrap().glow), (0.01, kawase));
-    let look = Look { visibility: 3.0, streak_length: 0.5 };
+    let look = Look { visibility: 3.0, streak_length: 0.5, spray: 4.0 };
     assert_eq!((default.look, parse(ALL).unwrap().look), (Look::PHYSICAL, look));
     assert_eq!(parse(ALL).unwrap().drop_exposure_s(0.0), 0.005);
     let all = parse(ALL).unwrap().camera;
@@ -482,7 +483,7 @@ fn t11_keys_are_known_and_stand_once() {
     says(
         "[rian]\nrate_mm_h = 5",
         "line 1, column 2: rian: unknown key \"rian\", perhaps rain; allowed: preset, rain, layers, sky, sun, camera, model, light, \
-         flash, lightning, wind, gusts, turbulence, wind_field, streaks, glass, fog, glow, look, puddle, ripples, wetness, splashes, drips, drip, output",
+         flash, lightning, wind, gusts, turbulence, wind_field, streaks, glass, fog, glow, look, puddle, ripples, wetness, splashes, spray, drips, drip, output",
     );
     refused("[camera]\nfov_rad = 1", 2, "unknown key \"fov_rad\", perhaps fov_deg;");
     refused("[camera]\nshutter_s = 1.5", 2, "0 to 1 s");

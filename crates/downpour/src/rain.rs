@@ -8,6 +8,7 @@ mod textures;
 use downpour_drop::air::Air;
 use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution};
 use downpour_drop::oscillation::{Amplitudes, Fluids};
+use downpour_drop::spray::Spray;
 use downpour_gpu::{BufferPool, Gpu, wgpu};
 use downpour_render::camera::{EyeMotion, Viewpoint};
 use downpour_render::gpu::{FallingOnGpu, HostPipeline, PlateOnGpu, RainOnGpu, RainPipeline};
@@ -30,7 +31,7 @@ use downpour_trace::scene::SceneView;
 use downpour_weather::drop_exposure_s;
 use glam::{DVec3, Vec3};
 
-use crate::shower::{drops_among, fall_speed, splashes};
+use crate::shower::{drops_among, fall_speed, looking, splashes, spray};
 use obstacles::scene_of;
 
 pub use downpour_render::host::DepthRange;
@@ -105,6 +106,8 @@ pub struct Rain {
     masks_air: Air,
     /// Splashes, if drops splash.
     splashes: Option<SplashOptions>,
+    /// Spray, if there is any.
+    spray: Option<Spray>,
     has_obstacles: bool,
     /// True if some obstacles have holes.
     has_holes: bool,
@@ -128,7 +131,7 @@ impl Rain {
         settings: RainSettings,
     ) -> Result<Self, RainError> {
         let gpu = Gpu::on_device(device.clone(), queue.clone());
-        let Falling { sizes, field, splashes } = Falling::of(&settings)?;
+        let Falling { sizes, field, splashes, spray } = Falling::of(&settings)?;
         let masks = DropMasks::in_air(&settings.air)?;
         let masks = if splashes.is_some() { masks.with_splashes_in_air(&settings.air)? } else { masks };
         let rains = RainPipeline::new(&gpu)?;
@@ -152,6 +155,7 @@ impl Rain {
             field,
             masks,
             splashes,
+            spray,
             has_obstacles: false,
             has_holes: false,
             scene,
@@ -170,7 +174,7 @@ impl Rain {
     /// # Errors
     /// [`RainError`] for a setting outside its range; the old settings stay.
     pub fn set_settings(&mut self, settings: RainSettings) -> Result<(), RainError> {
-        let Falling { sizes, field, splashes } = Falling::of(&settings)?;
+        let Falling { sizes, field, splashes, spray } = Falling::of(&settings)?;
         if splashes.is_some() && !self.masks.has_splashes() {
             let masks = self.masks.clone().with_splashes_in_air(&self.masks_air)?;
             self.masks_on_gpu = self.rains.upload(&masks)?;
@@ -179,7 +183,8 @@ impl Rain {
         self.field_on_gpu = self.fields.upload(&field)?;
         self.frequencies = self.rains.frequencies(&Fluids::in_air(&settings.air))?;
         (self.fall_speed, self.medium) = (fall_speed(&sizes), None);
-        (self.sizes, self.field, self.splashes, self.settings) = (sizes, field, splashes, settings);
+        (self.sizes, self.field, self.settings) = (sizes, field, settings);
+        (self.splashes, self.spray) = (splashes, spray);
         Ok(())
     }
 
@@ -319,7 +324,7 @@ impl Rain {
         let mut stages = vec![[made.dispatches(), pass.environment()].concat()];
         stages.extend(found.stages_beside(pass.open_air()));
         stages.extend(pass.binning());
-        stages.push([pass.lamps(), pass.streaks(), pass.medium(), vec![pass.drops()]].concat());
+        stages.push([pass.lamps(), pass.streaks(), pass.medium(), vec![pass.drops()], pass.spray()].concat());
         for stage in &stages {
             let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: Some("rain"),
@@ -393,6 +398,7 @@ impl Rain {
                 ..Exposure::default()
             },
             visibility: settings.look.visibility,
+            spray: self.spray.map(|spray| looking(spray, &settings.look)),
             ..RainOptions::default()
         }
     }
@@ -403,6 +409,7 @@ struct Falling {
     sizes: DropSizeDistribution,
     field: RainField,
     splashes: Option<SplashOptions>,
+    spray: Option<Spray>,
 }
 
 impl Falling {
@@ -411,6 +418,7 @@ impl Falling {
         let options = DistributionOptions { air: settings.air, ..DistributionOptions::default() };
         let sizes = DropSizeDistribution::with_options(settings.sizes, settings.rate_mm_h, &options)?;
         let field = RainField::new(&sizes, settings.seed)?.with_wind(settings.uniform_wind()?);
-        Ok(Self { sizes, field, splashes: splashes(&settings.splashes, &settings.air)? })
+        let spray = spray(&settings.spray, &settings.splashes, &sizes)?;
+        Ok(Self { sizes, field, splashes: splashes(&settings.splashes, &settings.air)?, spray })
     }
 }

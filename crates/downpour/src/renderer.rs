@@ -17,7 +17,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::shower::{MovingEye, MovingScenery, Scenery, Shower, Still};
+use crate::shower::{MovingEye, MovingScenery, Scenery, Shower, ShowerError, Still};
 use downpour_atlas::{StreakAtlas, StreakPick};
 use downpour_render::camera::{Viewpoint, check_size};
 use downpour_render::glass::WetPane;
@@ -312,7 +312,7 @@ impl Renderer {
         let waits = self.drawn == 0 || self.exposure.is_none();
         let kept_frames = self.options.kept_frames;
         let mut medium = self.shower.medium(&frame_scene, drops.resolved(), &self.masks, time_s)?;
-        let options = self.picture_options(&frame_scene, time_s, medium);
+        let mut options = self.picture_options(&frame_scene, time_s, medium)?;
         let picture = match self.draw(&frame_scene, &drops, &options, kept_frames, waits) {
             Err(error) if self.drawn == 0 && self.drawer.falls_back(&error) => {
                 if self.water.as_ref().is_some_and(Water::is_on_device) {
@@ -321,7 +321,7 @@ impl Renderer {
                 }
                 drops = self.drops(&frame_scene, time_s, told)?;
                 medium = self.shower.medium(&frame_scene, drops.resolved(), &self.masks, time_s)?;
-                let options = self.picture_options(&frame_scene, time_s, medium);
+                options = self.picture_options(&frame_scene, time_s, medium)?;
                 self.draw(&frame_scene, &drops, &options, kept_frames, waits)?
             }
             drawn => drawn?,
@@ -333,10 +333,10 @@ impl Renderer {
         };
         let flashes = self.flashes(time_s, &drops, told)?;
         let triangles = frame_scene.triangles;
-        let truth = self.options.truth.then(|| {
-            let options = self.picture_options(&frame_scene, time_s, medium);
-            Box::new(TruthOf { masks: Arc::clone(&self.masks), options, frame_scene })
-        });
+        let truth = self
+            .options
+            .truth
+            .then(|| Box::new(TruthOf { masks: Arc::clone(&self.masks), options, frame_scene }));
         let begin_ms = begin.elapsed().as_secs_f64() * 1.0e3;
         Ok(PendingFrame {
             picture,
@@ -460,9 +460,14 @@ impl Renderer {
         Ok(Drops::Listed(self.shower.at(&*scenery, frame_scene, time_s, &mut passed)?))
     }
 
-    fn picture_options(&self, frame_scene: &FrameScene, time_s: f64, medium: RainMedium) -> PictureOptions {
+    fn picture_options(
+        &self,
+        frame_scene: &FrameScene,
+        time_s: f64,
+        medium: RainMedium,
+    ) -> Result<PictureOptions, ShowerError> {
         let form = self.refraction();
-        PictureOptions {
+        Ok(PictureOptions {
             size: frame_scene.size,
             grid: self.options.samples,
             sky_rays: self.options.sky_rays,
@@ -481,10 +486,11 @@ impl Renderer {
                 light: DropLightOptions::of_weather(&self.weather),
                 visibility: self.weather.look_at(time_s).visibility,
                 layers: self.weather.rain.layers,
+                spray: self.shower.spray(time_s)?,
                 ..RainOptions::default()
             },
             glow: Glow::of_weather(&self.weather, &medium),
-        }
+        })
     }
 
     /// Refraction of drops.

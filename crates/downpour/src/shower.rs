@@ -12,6 +12,7 @@ use downpour_drop::air::Air;
 use downpour_drop::distribution::{DropSizeDistribution, ExtinctionEfficiency};
 use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_drop::splash::SplashLaw;
+use downpour_drop::spray::Spray;
 use downpour_sim::SimError;
 use downpour_sim::field::{FallingDrop, RainField, VisibleDrops};
 use downpour_sim::impacts::SplashOptions;
@@ -19,7 +20,7 @@ use downpour_sim::resolved::Resolved;
 use downpour_sim::shelter::Obstacles;
 use downpour_sim::simulation::Bounce;
 use downpour_sim::view::View;
-use downpour_weather::{Rain, RainDrag, RainExtinction, RainUnresolved, RainVolume, Splashes, Weather};
+use downpour_weather::{Look, Rain, RainDrag, RainExtinction, RainUnresolved, RainVolume, Splashes, Weather};
 use downpour_wind::WindField;
 use glam::DVec3;
 
@@ -91,6 +92,8 @@ pub struct Shower {
     /// Splashes of drops, unless there are none.
     splashes: Option<SplashOptions>,
     dripping: Option<Dripping>,
+    /// The spray of a rain that does not change; without rain that of none.
+    spray: Option<Spray>,
     form: Form,
     /// The rain in closed form, in the uniform wind: that of the drops or, for puddles, one beside drops that go step by step.
     on_water: Option<Arc<RainField>>,
@@ -135,6 +138,7 @@ impl Shower {
             Some(field) if is_closed => Form::Closed(Arc::clone(field)),
             _ => Form::Stepped(Box::new(Stepped::new(law.clone(), weather))),
         };
+        let spray = spray(&weather.spray, &weather.splashes, &law)?;
         let (dripping, splashes) = (Dripping::new(weather)?, splashes(&weather.splashes, &weather.rain.air)?);
         let last = Arc::default();
         Ok(Self {
@@ -143,6 +147,7 @@ impl Shower {
             bounce: bounce(rain),
             dripping,
             splashes,
+            spray,
             form,
             on_water,
             last,
@@ -431,6 +436,20 @@ impl Shower {
         Ok(with_fog(RainMedium::new(&rain.sizes()?, resolved, masks, &options)?))
     }
 
+    /// The spray over what the rain hits in a picture at a time in seconds, as visible as `[look]` makes it; `None` if there is none.
+    ///
+    /// # Errors
+    /// As [`Shower::at`].
+    pub fn spray(&self, time_s: f64) -> Result<Option<Spray>, ShowerError> {
+        let (weather, look) = (&self.weather, self.weather.look_at(time_s));
+        let spray = if weather.spray.is_enabled && weather.keys.rate().is_some() {
+            spray(&weather.spray, &weather.splashes, &weather.rain_at(time_s).sizes()?)?
+        } else {
+            self.spray
+        };
+        Ok(spray.map(|spray| looking(spray, &look)))
+    }
+
     /// The medium of a rain that does not change: from frame to frame only its velocity does.
     fn steady_medium(
         &self,
@@ -539,6 +558,24 @@ pub(crate) fn splashes(splashes: &Splashes, air: &Air) -> Result<Option<SplashOp
     }
     let law = SplashLaw::new(splashes.film_m, air.temperature_c())?;
     Ok(Some(SplashOptions { law, size: splashes.size }))
+}
+
+/// Spray of drops of a rain, if there is any.
+pub(crate) fn spray(
+    spray: &downpour_weather::Spray,
+    splashes: &Splashes,
+    rain: &DropSizeDistribution,
+) -> Result<Option<Spray>, DropError> {
+    if !spray.is_enabled {
+        return Ok(None);
+    }
+    let law = SplashLaw::new(splashes.film_m, rain.options().air.temperature_c())?;
+    Ok(Some(Spray::of_rain(rain, &law, spray.droplet_m, spray.height_m)?))
+}
+
+/// Spray that is as visible as artistic multipliers make it.
+pub(crate) fn looking(spray: Spray, look: &Look) -> Spray {
+    Spray { extinction: spray.extinction * look.spray * look.visibility, ..spray }
 }
 
 /// Bounce of drops that meet a surface.

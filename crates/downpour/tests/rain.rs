@@ -534,7 +534,11 @@ fn a_host_makes_rain_more_visible() {
     let mut rain = Rain::new(gpu.device(), gpu.queue(), RainSettings { rate_mm_h: 0.0, ..some() }).unwrap();
     let dry = host.rain(&mut rain, &view(), f32::INFINITY, &[lamp]).unwrap();
     let mut drawn = |visibility, streak_length| {
-        rain.set_settings(RainSettings { look: Look { visibility, streak_length }, ..some() }).unwrap();
+        rain.set_settings(RainSettings {
+            look: Look { visibility, streak_length, ..Look::PHYSICAL },
+            ..some()
+        })
+        .unwrap();
         host.rain(&mut rain, &view(), f32::INFINITY, &[lamp]).unwrap()
     };
     assert!(drawn(0.0, 1.0) == dry);
@@ -560,9 +564,11 @@ fn bad_input_is_an_error_and_leaves_the_rain_as_it_was() {
         refused(RainSettings { ray_spacing: 5, ..settings() }),
         "spacing of rays is 5; allowed: 1 to 4"
     );
-    for look in
-        [Look { visibility: 21.0, ..Look::PHYSICAL }, Look { streak_length: f64::NAN, ..Look::PHYSICAL }]
-    {
+    for look in [
+        Look { visibility: 21.0, ..Look::PHYSICAL },
+        Look { streak_length: f64::NAN, ..Look::PHYSICAL },
+        Look { spray: -1.0, ..Look::PHYSICAL },
+    ] {
         assert!(refused(RainSettings { look, ..settings() }).contains("allowed: 0 to 20"));
     }
     let mut rain = Rain::new(gpu.device(), gpu.queue(), settings()).unwrap();

@@ -14,6 +14,7 @@ pub const MODULES: &[&Module] = &[
     &MEDIUM_STREAKS,
     &MEDIUM_OPEN,
     &MEDIUM_SPREAD,
+    &MEDIUM_PHASE,
     &MEDIUM_LIGHT,
     &MEDIUM_FILTER,
 ];
@@ -116,6 +117,13 @@ pub static MEDIUM_SPREAD: Module = Module {
     uses: &[&MEDIUM_CONSTANTS, &SCENE_CONSTANTS, &MEDIUM, &LIGHT, &DATA],
 };
 
+/// How drops and fog scatter light. Twin: `downpour_render::rain::medium::phase`.
+pub static MEDIUM_PHASE: Module = Module {
+    path: "render/medium_phase.wgsl",
+    wgsl: include_str!("../../wgsl/render/medium_phase.wgsl"),
+    uses: &[&MEDIUM_CONSTANTS],
+};
+
 /// Light of lamps. Twin: `downpour_render::rain::medium::light`.
 pub static MEDIUM_LIGHT: Module = Module {
     path: "render/medium_light.wgsl",
@@ -125,6 +133,7 @@ pub static MEDIUM_LIGHT: Module = Module {
         &MEDIUM,
         &MEDIUM_OPEN,
         &MEDIUM_SPREAD,
+        &MEDIUM_PHASE,
         &DROP_GLINT,
         &PATH_LATTICE,
         &LIGHT,

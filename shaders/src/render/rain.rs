@@ -36,6 +36,7 @@ pub const MODULES: &[&Module] = &[
     &TILES,
     &DROPS_ATLAS,
     &DROPS_GLINT,
+    &DROPS_MEDIUM,
     &DROPS,
 ];
 
@@ -413,6 +414,13 @@ pub static DROPS_GLINT: Module = Module {
     uses: &[&RAIN_CONSTANTS, &CAMERA, &DROPS_FRAME, &STREAK, &DROP_LIGHT_CONSTANTS, &DROP_GLINT],
 };
 
+/// Mean radiance of unresolved drops. Twin: `downpour_render::rain::drops_medium`.
+pub static DROPS_MEDIUM: Module = Module {
+    path: "render/drops_medium.wgsl",
+    wgsl: include_str!("../../wgsl/render/drops_medium.wgsl"),
+    uses: &[&RAIN_CONSTANTS, &DROPS_FRAME, &DROPS_CAPTURE, &STREAK_LOOKUP, &MEDIUM],
+};
+
 /// Drops through their masks. Twin: `downpour_render::rain::drops`.
 pub static DROPS: Module = Module {
     path: "render/drops.wgsl",
@@ -430,6 +438,7 @@ pub static DROPS: Module = Module {
         &DROP_LIGHT_CONSTANTS,
         &DROP_GLINT,
         &DROPS_GLINT,
+        &DROPS_MEDIUM,
         &MEDIUM,
         &MEDIUM_STREAKS,
     ],

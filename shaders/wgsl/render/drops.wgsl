@@ -272,15 +272,6 @@ fn drops_pixel(index: u32, x: u32, y: u32, scene: f32) -> vec4f {
     return drops_visible(seen, drops_frame.visibility);
 }
 
-// Mean radiance of an unresolved drop before a pixel.
-fn drops_medium(x: u32, y: u32) -> vec3f {
-    if drops_frame.streak_color == STREAK_WHITE {
-        return drops_capture_texel(drops_frame.capture_last, 0, 0);
-    }
-    let size = vec2f(f32(drops_frame.camera.width), f32(drops_frame.camera.height));
-    return streak_lookup_mean(medium_frame.shape, vec2f(f32(x) + 0.5, f32(y) + 0.5) / size);
-}
-
 // Mean radiance that fog scatters into a ray: the capture about the ray, over the solid angle of an even cone whose mean cosine is
 // the asymmetry of the phase function.
 fn drops_fog(direction: vec3f) -> vec3f {

@@ -7,18 +7,6 @@
 // Light that is weakened on its way from the lamp to the drop is taken to be made good by what is scattered forward on it.
 // Twin: downpour_render::rain::medium::light.
 
-// Integral of the phase functions of drops (by color) and of fog over the scattering angle, from 0 to each multiple of
-// pi / MEDIUM_ANGLES.
-@group(0) @binding(7) var<storage, read> medium_phase: array<vec4f>;
-
-// The integral of the phase function up to an angle.
-fn medium_light_phase(angle: f32) -> vec4f {
-    let position = clamp(angle * (f32(MEDIUM_ANGLES) / 3.1415927), 0.0, f32(MEDIUM_ANGLES));
-    let low = min(u32(position), MEDIUM_ANGLES - 1u);
-    let part = position - f32(low);
-    return (medium_phase[low] * (1.0 - part) + medium_phase[low + 1u] * part);
-}
-
 // The part of a ray that a lamp lights: within its cone and its range.
 fn medium_light_span(light: RenderLight, origin: vec3f, direction: vec3f, farthest: f32) -> vec2f {
     var span = vec2f(0.0, farthest);
@@ -129,7 +117,7 @@ fn medium_light_lamp(sum: MediumLight, index: u32, direction: vec3f, reach: vec2
     var near_depth = medium_depth(min(near, rain_reach), region, outline);
     var near_fog = medium_fog_depth(medium_frame.fog, direction.y, near);
     var near_angle = first;
-    var near_phase = medium_light_phase(first);
+    var near_phase = medium_phase_within(first);
     for (var part = 0u; part < MEDIUM_PARTS && near < lit.y; part += 1u) {
         // To the end of the slice, or as far as the direction to the lamp turns by some degrees.
         let slice = medium_node(2u * u32(0.5 * (3.0 * log2(max(near * 1.001 / MEDIUM_NEAR, 1.0)) + 1.0)) + 1u);
@@ -139,19 +127,14 @@ fn medium_light_lamp(sum: MediumLight, index: u32, direction: vec3f, reach: vec2
         let far_depth = medium_depth(min(far, rain_reach), region, outline);
         let far_fog = medium_fog_depth(medium_frame.fog, direction.y, far);
         let far_angle = atan2(h, nearest - far);
-        let far_phase = medium_light_phase(far_angle);
+        let far_phase = medium_phase_within(far_angle);
         let middle = nearest - h * cos(0.5 * (near_angle + far_angle)) / max(sin(0.5 * (near_angle + far_angle)), 1.0e-6);
         let light = light_sample(lamp, eye + direction * clamp(middle, near, far), 0.0);
         var given = light.irradiance * 3.1415927;
         var foggy = given * medium_frame.fog.w;
         let through_fog = exp(-0.5 * (near_fog + far_fog));
         if parallel {
-            // Half an interval of the table to each side.
-            let toward = drop_glint_angle(light.direction, direction) * 3.1415927;
-            let width = 3.1415927 / f32(MEDIUM_ANGLES);
-            let low = max(toward - 0.5 * width, 0.0);
-            let high = min(toward + 0.5 * width, 3.1415927);
-            let phase = (medium_light_phase(high) - medium_light_phase(low)) / (high - low);
+            let phase = medium_phase_at(drop_glint_angle(light.direction, direction) * 3.1415927);
             given *= phase.rgb * (exp(-near_depth) - exp(-far_depth)) * through_fog;
             foggy *= phase.w * (exp(-near_fog) - exp(-far_fog)) * exp(-0.5 * (near_depth + far_depth));
         } else {

@@ -1,5 +1,7 @@
 //! `shaders/wgsl/render/{capture,reduce,drops}.wgsl` against `downpour_render::rain`.
 
+pub(super) mod spray;
+
 use downpour_atlas::StreakPick;
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_drop::oscillation::Amplitudes;

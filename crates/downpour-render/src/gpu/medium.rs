@@ -27,6 +27,7 @@ pub struct MediumPass<'a> {
     light: (wgpu::BindGroup, [u32; 3]),
     filter: (wgpu::BindGroup, [u32; 3]),
     frame: wgpu::Buffer,
+    phase: wgpu::Buffer,
     found: wgpu::Buffer,
     /// What its light is found from, besides plate and lamps.
     of: MediumOf,
@@ -110,6 +111,7 @@ impl MediumPipeline {
             light: (light, rays.workgroups([width, height])),
             filter: (filter, [width.div_ceil(8), height.div_ceil(8), 1]),
             frame,
+            phase,
             of: MediumOf { medium: medium.medium, rays, phase: medium.phase.clone(), found: found.clone() },
             found,
             is_known: false,
@@ -145,6 +147,11 @@ impl MediumPass<'_> {
     /// The frame of the medium on the device.
     pub(super) fn frame(&self) -> &wgpu::Buffer {
         &self.frame
+    }
+
+    /// The phase functions on the device.
+    pub(super) fn phase(&self) -> &wgpu::Buffer {
+        &self.phase
     }
 
     /// Reads the grid and what was found before each pixel, as [`MediumLight::found`].

@@ -16,6 +16,7 @@ use super::layers::{LayersPass, LayersPipeline};
 use super::medium::{MediumPass, MediumPipeline};
 use super::plate::PlateOnGpu;
 use super::project::{FallingOnGpu, JobGroups, ListOnGpu, ProjectPass, ProjectPipeline};
+use super::spray::{SprayOf, SprayPass, SprayPipeline};
 use super::tiles::{TilesPass, TilesPipeline};
 use crate::rain::light::{DropLightTable, DropLights};
 use crate::rain::profiles::{MAX_ENTRIES, MAX_RAYS, ProfilesFrame};
@@ -38,6 +39,8 @@ pub struct RainPipeline {
     drops: ComputeKernel,
     /// Made for the first picture with layers.
     layers: Arc<OnceLock<LayersPipeline>>,
+    /// Made for the first picture with spray.
+    spray: Arc<OnceLock<SprayPipeline>>,
 }
 
 /// Masks on the device.
@@ -65,6 +68,7 @@ pub struct RainPass<'a> {
     lamps: [DropLightPass<'a>; 2],
     medium: MediumPass<'a>,
     drops: wgpu::BindGroup,
+    spray: Option<SprayPass>,
     layers: Option<LayersPass>,
     texels: wgpu::Buffer,
     table: wgpu::Buffer,
@@ -94,16 +98,18 @@ impl RainPipeline {
             medium: MediumPipeline::new(gpu)?,
             drops: kernel(&DROPS_KERNEL)?,
             layers: Arc::default(),
+            spray: Arc::default(),
         })
     }
 
     /// The pipeline of layers.
     fn layers(&self) -> Result<&LayersPipeline, GpuError> {
-        if let Some(known) = self.layers.get() {
-            return Ok(known);
-        }
-        let made = LayersPipeline::new(&self.gpu)?;
-        Ok(self.layers.get_or_init(|| made))
+        once(&self.layers, || LayersPipeline::new(&self.gpu))
+    }
+
+    /// The pipelines of spray.
+    fn spray(&self) -> Result<&SprayPipeline, GpuError> {
+        once(&self.spray, || SprayPipeline::new(&self.gpu))
     }
 
     /// Drops whose lists the device can bind.
@@ -256,6 +262,19 @@ impl RainPipeline {
             medium.frame(),
         ];
         let shown = self.drops.bind(buffers, &bindings)?;
+        let spray = match &rain.spray {
+            Some(spray) if !lights[0].lighting.is_open() => {
+                let of = SprayOf {
+                    drops: &frame,
+                    table: &table,
+                    medium: medium.frame(),
+                    phase: medium.phase(),
+                    layer: &layer,
+                };
+                Some(self.spray()?.prepare(buffers, picture, plate, spray, of)?)
+            }
+            _ => None,
+        };
         let layers = match &rain.layers {
             Some(layers) => {
                 let layers = layers.lit(rain.frame.camera.eye, lights[0].lighting);
@@ -276,6 +295,7 @@ impl RainPipeline {
             lamps,
             medium,
             drops: shown,
+            spray,
             layers,
             texels,
             table,
@@ -284,6 +304,15 @@ impl RainPipeline {
             classes: rain.profiles.classes.clone(),
         })
     }
+}
+
+/// What is made when it is first asked for.
+fn once<T>(cell: &OnceLock<T>, make: impl FnOnce() -> Result<T, GpuError>) -> Result<&T, GpuError> {
+    if let Some(known) = cell.get() {
+        return Ok(known);
+    }
+    let made = make()?;
+    Ok(cell.get_or_init(|| made))
 }
 
 /// Brings the drops of a picture to the device.
@@ -406,6 +435,22 @@ impl RainPass<'_> {
     pub fn drops(&self) -> Dispatch<'_> {
         let groups = [self.size[0].div_ceil(8), self.size[1].div_ceil(8), 1];
         self.pipeline.drops.dispatch(&self.drops, groups)
+    }
+
+    /// Spray behind that, if the rain has some, in this order; after [`RainPass::drops`].
+    #[must_use]
+    pub fn spray(&self) -> Vec<Dispatch<'_>> {
+        self.spray.as_ref().map_or_else(Vec::new, SprayPass::dispatches)
+    }
+
+    /// Reads the map of heights under spray, and what was found of it before each pixel, as the twins have it; nothing without spray.
+    ///
+    /// # Errors
+    /// Returns the error of the GPU.
+    pub fn spray_found(&self) -> Result<(Vec<f32>, Vec<[f32; 4]>), GpuError> {
+        let Some(spray) = &self.spray else { return Ok((Vec::new(), Vec::new())) };
+        let [map, found] = spray.made();
+        Ok((self.pipeline.gpu.read(map)?, self.pipeline.gpu.read(found)?))
     }
 
     /// Layers of a texture before that, if the rain has some; after [`RainPass::drops`].

@@ -15,6 +15,7 @@ use rayon::prelude::*;
 use super::drops_atlas::{DropsAtlas, DropsAtlasStreak, drops_atlas_streak};
 use super::drops_frame::DropsView;
 use super::drops_mask::drops_mask_unit;
+use super::drops_medium::drops_medium;
 use super::drops_shade::DropsShade;
 use super::environment::EnvironmentMap;
 use super::glint::{drop_glint_right, drop_glint_rousseau};
@@ -342,17 +343,6 @@ impl Buffers<'_> {
         drops_visible(seen, self.view.frame.visibility)
     }
 
-    /// Mean radiance of an unresolved drop before a pixel.
-    fn drops_medium(&self, x: u32, y: u32) -> Vec3 {
-        let frame = self.view.frame;
-        if frame.streak_color == STREAK_WHITE {
-            return self.view.drops_capture_texel(frame.capture_last, 0, 0);
-        }
-        let size = Vec2::new(frame.camera.width as f32, frame.camera.height as f32);
-        let position = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / size;
-        self.table.streak_lookup_mean(self.rain.medium.shape, position)
-    }
-
     /// Mean radiance that fog scatters into a ray: the capture about the ray, over the solid angle of an even cone whose mean cosine
     /// is the asymmetry of the phase function.
     fn drops_fog(&self, direction: Vec3) -> Vec3 {
@@ -385,7 +375,11 @@ impl Buffers<'_> {
         }
         // Air that rain does not reach thins the medium; evenly, as far as drops between it go.
         let thinned = depth / medium.medium_depth(end, span, 1.0).max(1.0e-12);
-        let shown_medium = if depth > 0.0 { self.drops_medium(x, y) } else { Vec3::ZERO };
+        let shown_medium = if depth > 0.0 {
+            drops_medium(&self.view, self.table, &self.rain.medium, x, y)
+        } else {
+            Vec3::ZERO
+        };
         let shown_fog = if medium.fog[0] > 0.0 { self.drops_fog(direction) } else { Vec3::ZERO };
         let (mut radiance, mut transmittance) = (Vec3::ZERO, 1.0);
         let mut behind = true;

@@ -5,15 +5,16 @@ use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::drops_frame::DropsFrame;
-use super::environment::EnvironmentFrame;
+use super::environment::{EnvironmentFrame, EnvironmentMap};
 use super::layers::LayersFrame;
 use super::light::{DropLightForm, DropLightOptions, DropLights};
 use super::medium::{MediumFrame, MediumLight, lamps_of};
 use super::profiles::StreakProfiles;
 use super::project::{Projected, Projector, project_axis, project_row};
+use super::spray::{SprayBlend, SprayFrame, SprayMap, SprayView};
 use super::streak::ScreenDrop;
 use super::tiles::tiles_within;
-use super::{DropMasks, RainOptions};
+use super::{DropMasks, RainOptions, StreakTable};
 use crate::RenderError;
 use crate::camera::Camera;
 use crate::plate::Lighting;
@@ -36,6 +37,8 @@ pub struct Rain {
     pub medium: MediumFrame,
     /// Layers of a texture in place of drops, without their lamps.
     pub layers: Option<LayersFrame>,
+    /// Spray over what the rain hits.
+    pub spray: Option<SprayFrame>,
     /// Layout of the environment map.
     pub environment: EnvironmentFrame,
     /// Profiles of moving drops in the streak radiance table.
@@ -83,6 +86,7 @@ impl Rain {
                 )
             },
             layers: LayersFrame::new(camera, options),
+            spray: options.spray.and_then(|spray| SprayFrame::new(&spray, &options.medium, eye.as_vec3())),
             environment,
             profiles,
             list,
@@ -126,6 +130,36 @@ impl Rain {
     #[must_use]
     pub fn medium_light<'a>(&self, lights: &DropLights<'a>) -> MediumLight<'a> {
         MediumLight::new(&self.medium, &self.frame.camera, lights, self.light.form)
+    }
+
+    /// Puts spray behind the rain of a picture over a plate (its pixels and environment map) with the light of its streaks; `lights` are those of
+    /// [`Rain::lights`]. There is none where no obstacle is.
+    pub fn add_spray(
+        &self,
+        frame: &SprayFrame,
+        lights: &DropLights<'_>,
+        (clean, environment, table): (&[[f32; 4]], &EnvironmentMap, &StreakTable),
+        layer: &mut [[f32; 4]],
+    ) {
+        if lights.lighting.is_open() {
+            return;
+        }
+        let map = SprayMap::new(frame, lights.lighting);
+        let view = SprayView { frame, map: &map };
+        let mut found = view.found(&self.frame.camera, &self.medium, clean);
+        self.medium_light(lights).light_spray(&mut found);
+        self.blend_spray(&found, (environment, table), layer);
+    }
+
+    /// Puts spray that was found and lit before each pixel behind the rain of a picture.
+    pub fn blend_spray(
+        &self,
+        found: &[[f32; 4]],
+        (environment, table): (&EnvironmentMap, &StreakTable),
+        layer: &mut [[f32; 4]],
+    ) {
+        let (drops, medium) = (&self.frame, &self.medium);
+        SprayBlend { found, drops, environment, table, medium }.behind(layer);
     }
 
     /// For each drop that was given and is not hidden altogether by the scene, its place among those given, nearest first.

@@ -17,6 +17,7 @@ pub mod fog;
 mod frame;
 mod light;
 mod open;
+pub(super) mod phase;
 pub mod spread;
 pub mod streaks;
 
@@ -225,6 +226,11 @@ impl RainMedium {
     #[must_use]
     pub fn velocity(&self) -> Vec3 {
         self.velocity
+    }
+
+    /// Unit vector against the mean fall.
+    pub(super) fn rise(&self) -> Vec3 {
+        self.rise
     }
 
     /// Extinction of all drops, drawn or not, for level rays, 1/m.

@@ -314,6 +314,10 @@ impl PictureRenderer {
         passes.run("streaks", &pass.streaks())?;
         passes.run_each("unresolved", &pass.medium())?;
         passes.run("drops", &[pass.drops(), pass.seen()])?;
+        let spray = pass.spray();
+        if !spray.is_empty() {
+            passes.run("spray", &spray)?;
+        }
         if let Some(layers) = pass.layers() {
             passes.run("layers", &[layers])?;
         }

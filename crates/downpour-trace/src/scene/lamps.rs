@@ -379,6 +379,11 @@ impl Lighting for SceneView<'_> {
         self.data.surface_blocker(point, direction, self.frame.nearest, BVH_FAR).is_some()
     }
 
+    fn first_surface(&self, point: Vec3, direction: Vec3) -> Option<f32> {
+        let hit = self.data.surface_hit(point, direction, self.frame.nearest, BVH_FAR);
+        hit.map(|hit| hit.distance)
+    }
+
     fn is_open(&self) -> bool {
         self.data.triangles.is_empty()
     }

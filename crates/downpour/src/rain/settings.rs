@@ -5,7 +5,7 @@ use downpour_drop::distribution::DropSizeLaw;
 use downpour_math::{OutOfRange, in_range};
 use downpour_sim::simulation::Bounce;
 use downpour_trace::data::MAX_RAY_SPACING;
-use downpour_weather::{Look, Splashes};
+use downpour_weather::{Look, Splashes, Spray};
 use downpour_wind::{UniformWind, Wind};
 
 use super::{RainError, RainView};
@@ -34,6 +34,8 @@ pub struct RainSettings {
     pub far_m: f64,
     /// Splashes where drops hit obstacles ([`Rain::set_obstacles`](super::Rain::set_obstacles)).
     pub splashes: Splashes,
+    /// Mist of droplets over obstacles that drops hit, on a film of water as deep as that of the splashes.
+    pub spray: Spray,
     /// Droplets that rebound from obstacles; a fraction of 0: none.
     pub bounce: Bounce,
     /// Artistic multipliers.
@@ -55,6 +57,7 @@ impl Default for RainSettings {
             near_m: 0.05,
             far_m: 50.0,
             splashes: Splashes::default(),
+            spray: Spray::default(),
             bounce: Bounce::default(),
             look: Look::PHYSICAL,
         }
@@ -83,6 +86,7 @@ impl RainSettings {
         in_range("size of splashes", self.splashes.size, "", &(0.1..=10.0), 1.0, "0.1 to 10")?;
         in_range("visibility of rain", self.look.visibility, "", &(0.0..=20.0), 1.0, "0 to 20")?;
         in_range("length of streaks", self.look.streak_length, "", &(0.0..=20.0), 1.0, "0 to 20")?;
+        in_range("density of spray", self.look.spray, "", &(0.0..=20.0), 1.0, "0 to 20")?;
         let bounce = &self.bounce;
         for (name, value, range, allowed) in [
             ("fraction of impacts that rebound", bounce.fraction, 0.0..=1.0, "0 to 1"),

@@ -91,7 +91,7 @@ impl Renderer {
         let frame_scene = self.wet(time_s, told)?;
         let drops = self.drops(&frame_scene, time_s, told)?;
         let medium = self.shower.medium(&frame_scene, drops.resolved(), &self.masks, time_s)?;
-        let options = self.picture_options(&frame_scene, time_s, medium);
+        let options = self.picture_options(&frame_scene, time_s, medium)?;
         let exposure = exposure * self.weather.exposure_factor(time_s);
         let (curve, edges) = (self.weather.camera.tone, self.weather.camera.edges);
         let tone = Some(Tone { exposure, curve, edges });

@@ -69,7 +69,7 @@ impl Renderer {
             }
         };
         let medium = self.shower.medium(&frame_scene, drops.resolved(), &self.masks, time_s + later_s)?;
-        let mut options = self.picture_options(&frame_scene, time_s, medium);
+        let mut options = self.picture_options(&frame_scene, time_s, medium)?;
         options.rain.exposure = Exposure {
             shutter_s: end_s - begin_s,
             time_s: time_s + later_s,

@@ -38,6 +38,7 @@ pub(super) fn stats(frame: &Frame, computer: &Computer, weather: &Weather) -> Va
         "look": {
             "visibility": number(look.visibility),
             "streak_length": number(look.streak_length),
+            "spray": number(look.spray),
             "splash_size": number(weather.splashes.size),
             "milk": weather.rain.layers.map(|layers| number(layers.milk)),
         },

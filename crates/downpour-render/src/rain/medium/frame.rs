@@ -175,7 +175,7 @@ impl MediumFrame {
     }
 
     /// Distance at which a ray from the eye comes through the pane.
-    fn medium_begin(&self, direction: Vec3) -> f32 {
+    pub(in crate::rain) fn medium_begin(&self, direction: Vec3) -> f32 {
         let pane = Vec4::from(self.pane);
         if pane.w <= 0.0 {
             return 0.0;

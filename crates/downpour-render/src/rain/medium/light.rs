@@ -5,27 +5,24 @@ use std::f32::consts::PI;
 
 use downpour_math::ops;
 use downpour_math::rng::rng_unit;
-use downpour_shaders::render::drop_light::DROP_LIGHT_ENTRIES;
 use downpour_shaders::render::medium::{
-    MEDIUM_ANGLES, MEDIUM_DARK, MEDIUM_FAR, MEDIUM_FOG_REACH, MEDIUM_LAMP_REACH, MEDIUM_LAMPS,
-    MEDIUM_LATTICE, MEDIUM_NEAR, MEDIUM_PARTS, MEDIUM_SKY, MEDIUM_SKY_REACH, MEDIUM_SLICES, MEDIUM_SPOTS,
-    MEDIUM_TURN,
+    MEDIUM_DARK, MEDIUM_FAR, MEDIUM_FOG_REACH, MEDIUM_LAMP_REACH, MEDIUM_LAMPS, MEDIUM_LATTICE, MEDIUM_NEAR,
+    MEDIUM_PARTS, MEDIUM_SKY, MEDIUM_SKY_REACH, MEDIUM_SLICES, MEDIUM_SPOTS, MEDIUM_TURN,
 };
-use glam::{Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::MediumFrame;
 use super::filter::Filter;
-use super::fog::{medium_fog_depth, phase_integral};
+use super::fog::medium_fog_depth;
 use super::frame::{medium_both, medium_node, medium_roots};
+use super::phase::{medium_phase_at, medium_phase_within, phase_table};
 use crate::camera::Camera;
 use crate::light::{Light, light_weight};
 use crate::path_lattice::path_lattice_words;
 use crate::plate::Lighting;
 use crate::rain::glint::drop_glint_angle;
-use crate::rain::light::{DropLightForm, DropLightTable, DropLights, drop_light_mean};
-
-const _: () = assert!(MEDIUM_ANGLES == DROP_LIGHT_ENTRIES);
+use crate::rain::light::{DropLightForm, DropLights};
 
 /// Light of a scene's lamps on unresolved rain.
 #[derive(Clone, Debug)]
@@ -65,38 +62,6 @@ pub(in crate::rain) fn lamps_of(form: DropLightForm) -> u32 {
     }
 }
 
-/// Integral of a drop's phase function over the scattering angle: row k up to the angle k pi / 256.
-///
-/// [`DropLightForm::Rousseau2006`] depends on the vertical, too; lamps are taken to be as high as the eye.
-fn phase(form: DropLightForm, table: &DropLightTable, asymmetry: f64) -> Vec<[f32; 4]> {
-    let width = std::f64::consts::PI / f64::from(MEDIUM_ANGLES);
-    let mut sum = [0.0f64; 3];
-    let mut fog = 0.0;
-    let mut rows = vec![[0.0; 4]];
-    for (k, row) in (0..MEDIUM_ANGLES).zip(table.rows()) {
-        let of_formula = |value: f32| [f64::from(value); 3];
-        let values = match form {
-            DropLightForm::Traced | DropLightForm::Atlas => std::array::from_fn(|c| f64::from(row[c])),
-            DropLightForm::Rousseau2006
-            | DropLightForm::Rousseau2006External
-            | DropLightForm::Rousseau2006Internal => {
-                let angle = (k as f32 + 0.5) * (PI / MEDIUM_ANGLES as f32);
-                let light = Vec3::new(ops::sin(angle), 0.0, -ops::cos(angle));
-                of_formula(drop_light_mean(Vec3::NEG_Z, light, form.terms()) / PI)
-            }
-            DropLightForm::ImSung2022 => of_formula(1.0 / PI),
-            DropLightForm::None => of_formula(0.0),
-        };
-        for (sum, value) in sum.iter_mut().zip(values) {
-            *sum += value * width;
-        }
-        fog += phase_integral(asymmetry, k);
-        let [r, g, b] = sum.map(|sum| sum as f32);
-        rows.push([r, g, b, fog as f32]);
-    }
-    rows
-}
-
 impl<'a> MediumLight<'a> {
     /// The unresolved rain of a picture, lit by `form` as its drops are.
     pub(crate) fn new(
@@ -107,7 +72,7 @@ impl<'a> MediumLight<'a> {
     ) -> Self {
         let open = u32::from(lights.lighting.is_open());
         let medium = MediumFrame { open, ..*medium };
-        let phase = phase(form, lights.table, medium.fog_phase[1].into());
+        let phase = phase_table(form, lights.table, medium.fog_phase[1].into());
         Self { lighting: lights.lighting, camera: *camera, medium, phase }
     }
 
@@ -150,15 +115,6 @@ impl<'a> MediumLight<'a> {
             .collect();
         rows.extend(pixels);
         rows
-    }
-
-    /// The integral of the phase function up to an angle.
-    fn medium_light_phase(&self, angle: f32) -> Vec4 {
-        let position = (angle * (MEDIUM_ANGLES as f32 / PI)).clamp(0.0, MEDIUM_ANGLES as f32);
-        let low = (position as u32).min(MEDIUM_ANGLES - 1);
-        let part = position - low as f32;
-        let at = |k: u32| Vec4::from(self.phase[k as usize]);
-        at(low) * (1.0 - part) + at(low + 1) * part
     }
 
     /// The part of a ray that a lamp lights: within its cone and its range.
@@ -227,7 +183,7 @@ impl<'a> MediumLight<'a> {
         let mut near_depth = medium.medium_depth(near.min(rain_reach), region, outline);
         let mut near_fog = fog_depth(near);
         let mut near_angle = first;
-        let mut near_phase = self.medium_light_phase(first);
+        let mut near_phase = medium_phase_within(&self.phase, first);
         for part in 0..MEDIUM_PARTS {
             if near >= lit.y {
                 break;
@@ -241,7 +197,7 @@ impl<'a> MediumLight<'a> {
             let far_depth = medium.medium_depth(far.min(rain_reach), region, outline);
             let far_fog = fog_depth(far);
             let far_angle = ops::atan2(h, nearest - far);
-            let far_phase = self.medium_light_phase(far_angle);
+            let far_phase = medium_phase_within(&self.phase, far_angle);
             let middle = at_angle(0.5 * (near_angle + far_angle));
             let light = lamp.light_sample(eye + direction * middle.clamp(near, far), 0.0);
             let mut given = light.irradiance * PI;
@@ -249,10 +205,7 @@ impl<'a> MediumLight<'a> {
             let through_fog = ops::exp(-0.5 * (near_fog + far_fog));
             if parallel {
                 let toward = drop_glint_angle(light.direction, direction) * PI;
-                let width = PI / MEDIUM_ANGLES as f32;
-                let low = (toward - 0.5 * width).max(0.0);
-                let high = (toward + 0.5 * width).min(PI);
-                let phase = (self.medium_light_phase(high) - self.medium_light_phase(low)) / (high - low);
+                let phase = medium_phase_at(&self.phase, toward);
                 given *= phase.truncate() * (ops::exp(-near_depth) - ops::exp(-far_depth)) * through_fog;
                 let passed = ops::exp(-0.5 * (near_depth + far_depth));
                 foggy *= phase.w * (ops::exp(-near_fog) - ops::exp(-far_fog)) * passed;

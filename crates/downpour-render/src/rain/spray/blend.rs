@@ -1,0 +1,78 @@
+//! Spray behind the rain of a picture. Twin of `shaders/wgsl/render/spray_blend.wgsl`, where the method is described.
+
+use downpour_math::ops;
+use downpour_shaders::render::scene::SKYLIGHT_RADIUS;
+use downpour_shaders::render::spray::SPRAY_ALIKE;
+use glam::{Vec3, Vec4};
+use rayon::prelude::*;
+
+use crate::light::light_weight;
+use crate::rain::drops_frame::DropsView;
+use crate::rain::drops_medium::drops_medium;
+use crate::rain::medium::MediumFrame;
+use crate::rain::{DropsFrame, EnvironmentMap, StreakTable};
+use crate::spacing::window;
+
+/// Spray that was found and lit before the pixels of a picture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SprayBlend<'a> {
+    /// Two rows for each pixel.
+    pub(crate) found: &'a [[f32; 4]],
+    /// The drops before it, and what they show.
+    pub(crate) drops: &'a DropsFrame,
+    pub(crate) environment: &'a EnvironmentMap,
+    pub(crate) table: &'a StreakTable,
+    pub(crate) medium: &'a MediumFrame,
+}
+
+impl SprayBlend<'_> {
+    fn rows(&self, x: u32, y: u32) -> [Vec4; 2] {
+        let at = 2 * (y * self.drops.camera.width + x) as usize;
+        [self.found[at].into(), self.found[at + 1].into()]
+    }
+
+    /// Light of lamps on the spray before a pixel, as far as it is seen.
+    fn spray_blend_light(&self, x: u32, y: u32) -> Vec3 {
+        let [width, height] = self.drops.camera.size();
+        let [own, place] = self.rows(x, y);
+        let whole = own.truncate();
+        if light_weight(whole) <= 0.0 {
+            return Vec3::ZERO;
+        }
+        let (mut all, mut seen) = (Vec3::ZERO, Vec3::ZERO);
+        for row in window(y, 1, SKYLIGHT_RADIUS, 0, height) {
+            for column in window(x, 1, SKYLIGHT_RADIUS, 0, width) {
+                let [other, far] = self.rows(column, row);
+                let apart = (place.w - far.w).abs() / (SPRAY_ALIKE * place.w.max(far.w).max(1.0e-6));
+                let weight = (1.0 - apart).max(0.0);
+                if weight > 0.0 && other.w > 0.0 {
+                    all += other.truncate() * weight;
+                    seen += far.truncate() * weight;
+                }
+            }
+        }
+        whole * seen / all.max(Vec3::splat(1.0e-30))
+    }
+
+    /// The rain of a pixel with the spray behind it.
+    fn spray_blend_pixel(&self, x: u32, y: u32, rain: Vec4) -> Vec4 {
+        let depth = self.rows(x, y)[0].w;
+        if depth <= 0.0 {
+            return rain;
+        }
+        let view = DropsView { frame: self.drops, masks: &[], capture: &self.environment.texels };
+        let left = ops::exp(-depth);
+        let shown = (drops_medium(&view, self.table, self.medium, x, y) + self.spray_blend_light(x, y))
+            * (1.0 - left);
+        (rain.truncate() + shown * rain.w).extend(rain.w * left)
+    }
+
+    /// Puts the spray behind rain: radiance, and the transmittance of the scene behind it. The same bits for any number of threads.
+    pub(crate) fn behind(&self, rain: &mut [[f32; 4]]) {
+        let width = self.drops.camera.width;
+        rain.par_iter_mut().enumerate().for_each(|(index, pixel)| {
+            let [x, y] = [index as u32 % width, index as u32 / width];
+            *pixel = self.spray_blend_pixel(x, y, Vec4::from(*pixel)).to_array();
+        });
+    }
+}

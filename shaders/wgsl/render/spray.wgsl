@@ -1,0 +1,164 @@
+// Spray: the layer of droplets over what rain hits, before each pixel.
+// Law: the extinction is that at a surface times exp(-height over the nearest surface below / h), where nothing keeps the rain off; below the
+// first surface that rain meets there is none.
+// Method: the ray is followed through the map of heights (spray_map.wgsl), cell by cell where it is above all heights of a cell, else
+// texel by texel, with heights that are linear between texels and the integral of the law in closed form.
+// Twin: downpour_render::rain::spray.
+
+@group(0) @binding(6) var<storage, read> spray_clean: array<vec4f>;
+@group(0) @binding(7) var<storage, read> spray_map: array<f32>;
+// For each pixel two: light of lamps if nothing hid them, and optical depth; light of lamps that one ray has seen, and the distance of a
+// place that chance picks by the light that it would give.
+@group(0) @binding(8) var<storage, read_write> spray_found: array<vec4f>;
+
+// Position in texels of a square of a point `way` from another of the plane: the difference from the square's corner first, which has more digits.
+fn spray_texel(level: u32, foot: vec2f, way: vec2f) -> vec2f {
+    let square = spray_frame.levels[level];
+    return ((foot - square.xy) + way) * square.w;
+}
+
+// The first square from `level` on in which a point `way` from another of the plane is; SPRAY_LEVELS: none.
+fn spray_level(level: u32, foot: vec2f, way: vec2f) -> u32 {
+    var found = level;
+    while found < SPRAY_LEVELS {
+        let texel = spray_texel(found, foot, way);
+        if min(texel.x, texel.y) >= 1.0 && max(texel.x, texel.y) < f32(SPRAY_SIZE - 2u) {
+            break;
+        }
+        found += 1u;
+    }
+    return found;
+}
+
+// The height of what rain hits at a position in texels of a square, linear between texels.
+fn spray_height(level: u32, texel: vec2f) -> f32 {
+    let last = f32(SPRAY_SIZE - 2u);
+    let low = clamp(floor(texel), vec2f(0.0), vec2f(last));
+    let part = clamp(texel - low, vec2f(0.0), vec2f(1.0));
+    let first = (level * SPRAY_SIZE + u32(low.y)) * SPRAY_SIZE + u32(low.x);
+    let near = spray_map[first] * (1.0 - part.x) + spray_map[first + 1u] * part.x;
+    let far = spray_map[first + SPRAY_SIZE] * (1.0 - part.x) + spray_map[first + SPRAY_SIZE + 1u] * part.x;
+    return near * (1.0 - part.y) + far * part.y;
+}
+
+// No height of the cell of a position in texels, and of its neighbors toward greater ones, is above this.
+fn spray_roof(level: u32, texel: vec2f) -> f32 {
+    let cell = min(vec2u(texel) / SPRAY_CELL, vec2u(SPRAY_CELLS - 1u));
+    let next = min(cell + 1u, vec2u(SPRAY_CELLS - 1u));
+    let first = SPRAY_LEVELS * SPRAY_SIZE * SPRAY_SIZE + level * SPRAY_CELLS * SPRAY_CELLS;
+    let near = max(spray_map[first + cell.y * SPRAY_CELLS + cell.x], spray_map[first + cell.y * SPRAY_CELLS + next.x]);
+    let far = max(spray_map[first + next.y * SPRAY_CELLS + cell.x], spray_map[first + next.y * SPRAY_CELLS + next.x]);
+    return max(near, far);
+}
+
+// Way along a coordinate in texels that changes by `rate` a meter, in meters, to the border of its cell. What is on a border is in the cell
+// ahead.
+fn spray_border(texel: f32, rate: f32) -> f32 {
+    if abs(rate) < 1.0e-6 {
+        return SPRAY_FAR;
+    }
+    let edge = f32(SPRAY_CELL);
+    let cell = floor((texel + sign(rate) * SPRAY_AHEAD) / edge);
+    return max(((cell + select(0.0, 1.0, rate > 0.0)) * edge - texel) / rate, 0.0);
+}
+
+// Mean of exp(-gap) between two gaps over a surface, in heights of the decrease; nothing below it.
+fn spray_between(a: f32, b: f32) -> f32 {
+    let low = min(a, b);
+    let high = max(a, b);
+    if high <= 0.0 {
+        return 0.0;
+    }
+    let above = select(1.0, high / (high - low), low < 0.0);
+    let foot = max(low, 0.0);
+    let x = high - foot;
+    // (1 - exp(-x)) / x, by its series where the difference would lose digits.
+    var mean = 1.0 - x * (0.5 - x / 6.0);
+    if x > 0.02 {
+        mean = (1.0 - exp(-x)) / x;
+    }
+    return above * exp(-foot) * mean;
+}
+
+// Optical depth of spray along a ray of unit direction from the eye between two distances, and a distance that a number of [0, 1) picks by
+// the light that is taken out there.
+fn spray_along(direction: vec3f, begin: f32, end: f32, number: f32) -> vec2f {
+    let eye = spray_frame.eye;
+    let lean = spray_frame.lean;
+    let foot = eye.xz - lean * eye.y;
+    let rate = direction.xz - lean * direction.y;
+    let pace = sqrt(dot(rate, rate));
+    let reach = SPRAY_REACH * spray_frame.height;
+    var level = 0u;
+    var at = begin;
+    var depth = 0.0;
+    // Light that is taken out so far, if all parts were thin.
+    var taken = 0.0;
+    var picked = begin;
+    var rest = number;
+    // Height of the ray over the surface, and whether it is known.
+    var gap = 0.0;
+    var known = false;
+    for (var turn = 0u; turn < SPRAY_TURNS && at < end; turn += 1u) {
+        let next_level = spray_level(level, foot, rate * at);
+        if next_level >= SPRAY_LEVELS {
+            break;
+        }
+        known = known && next_level == level;
+        level = next_level;
+        let square = spray_frame.levels[level];
+        let texel = spray_texel(level, foot, rate * at);
+        let speed = rate * square.w;
+        // A little into the next cell.
+        let border = min(spray_border(texel.x, speed.x), spray_border(texel.y, speed.y)) + 0.01 * square.z / max(pace, 1.0e-6);
+        let leaves = min(at + border, end);
+        let height = eye.y + direction.y * at;
+        if min(height, eye.y + direction.y * leaves) > spray_roof(level, texel + sign(speed) * SPRAY_AHEAD) + reach {
+            at = leaves;
+            known = false;
+            continue;
+        }
+        if !known {
+            gap = height - spray_height(level, texel);
+        }
+        let next = min(at + square.z / max(pace, 1.0e-6), leaves);
+        let way = next - at;
+        let there = eye.y + direction.y * next - spray_height(level, texel + speed * way);
+        let part = spray_frame.extinction * spray_between(gap / spray_frame.height, there / spray_frame.height) * way;
+        if part > 0.0 {
+            let here = part * exp(-depth - 0.5 * part);
+            depth += part;
+            taken += here;
+            let chance = here / max(taken, 1.0e-30);
+            if rest < chance {
+                // The part of the interval that is left is as good as a new number.
+                rest /= chance;
+                picked = at + way * rest;
+            } else {
+                rest = (rest - chance) / max(1.0 - chance, 1.0e-9);
+            }
+        }
+        at = next;
+        gap = there;
+        known = true;
+    }
+    return vec2f(depth, picked);
+}
+
+// Optical depth of spray before a pixel, and the distance of a place of it.
+fn spray_pixel(x: u32, y: u32) -> vec2f {
+    let scene = spray_clean[y * render_frame.camera.width + x].w;
+    let direction = camera_direction(render_frame.camera, f32(x) + 0.5, f32(y) + 0.5);
+    let number = rng_unit(path_lattice_words(x, y, SPRAY_LATTICE).x);
+    return spray_along(direction, medium_begin(direction), min(scene, SPRAY_FAR), number);
+}
+
+@compute @workgroup_size(8, 8, 1)
+fn main_spray(@builtin(global_invocation_id) id: vec3u) {
+    if id.x < render_frame.camera.width && id.y < render_frame.camera.height {
+        let found = spray_pixel(id.x, id.y);
+        let at = 2u * (id.y * render_frame.camera.width + id.x);
+        spray_found[at] = vec4f(0.0, 0.0, 0.0, found.x);
+        spray_found[at + 1u] = vec4f(0.0, 0.0, 0.0, found.y);
+    }
+}

@@ -1,0 +1,52 @@
+// Spray behind the rain of a picture: it shows the mean radiance of a drop and the light of lamps, and takes out light of what is behind.
+// The part of the lamps' light that is seen is a mean over the pixels around a pixel whose spray is as far away.
+// Twin: downpour_render::rain::spray::blend.
+
+@group(0) @binding(2) var<storage, read> spray_blend_found: array<vec4f>;
+// The rain: radiance, and the transmittance of the scene behind it.
+@group(0) @binding(3) var<storage, read_write> spray_blend_layer: array<vec4f>;
+
+// Light of lamps on the spray before a pixel, as far as it is seen.
+fn spray_blend_light(x: u32, y: u32) -> vec3f {
+    let width = drops_frame.camera.width;
+    let own = 2u * (y * width + x);
+    let whole = spray_blend_found[own].rgb;
+    if light_weight(whole) <= 0.0 {
+        return vec3f(0.0);
+    }
+    let distance = spray_blend_found[own + 1u].w;
+    var all = vec3f(0.0);
+    var seen = vec3f(0.0);
+    let reach = SKYLIGHT_RADIUS;
+    for (var row = max(y, reach) - reach; row <= min(y + reach, drops_frame.camera.height - 1u); row += 1u) {
+        for (var column = max(x, reach) - reach; column <= min(x + reach, width - 1u); column += 1u) {
+            let other = 2u * (row * width + column);
+            let far = spray_blend_found[other + 1u].w;
+            let weight = max(1.0 - abs(distance - far) / (SPRAY_ALIKE * max(max(distance, far), 1.0e-6)), 0.0);
+            if weight > 0.0 && spray_blend_found[other].w > 0.0 {
+                all += spray_blend_found[other].rgb * weight;
+                seen += spray_blend_found[other + 1u].rgb * weight;
+            }
+        }
+    }
+    return whole * seen / max(all, vec3f(1.0e-30));
+}
+
+// The rain of a pixel with the spray behind it.
+fn spray_blend_pixel(x: u32, y: u32, rain: vec4f) -> vec4f {
+    let depth = spray_blend_found[2u * (y * drops_frame.camera.width + x)].w;
+    if depth <= 0.0 {
+        return rain;
+    }
+    let left = exp(-depth);
+    let shown = (drops_medium(x, y) + spray_blend_light(x, y)) * (1.0 - left);
+    return vec4f(rain.rgb + shown * rain.w, rain.w * left);
+}
+
+@compute @workgroup_size(8, 8, 1)
+fn main_spray_blend(@builtin(global_invocation_id) id: vec3u) {
+    if id.x < drops_frame.camera.width && id.y < drops_frame.camera.height {
+        let index = id.y * drops_frame.camera.width + id.x;
+        spray_blend_layer[index] = spray_blend_pixel(id.x, id.y, spray_blend_layer[index]);
+    }
+}

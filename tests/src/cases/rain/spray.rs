@@ -1,0 +1,180 @@
+//! `shaders/wgsl/render/spray*.wgsl` against `downpour_render::rain::spray`.
+
+use downpour_drop::spray::Spray;
+use downpour_gpu::{Gpu, GpuError};
+use downpour_render::gpu::RainPipeline;
+use downpour_render::rain::spray::{SprayMap, SprayView, spray_between, spray_border};
+use downpour_render::rain::{DropMasks, RainOptions};
+use downpour_shaders::Kernel;
+use downpour_shaders::render::spray::{
+    SPRAY, SPRAY_BLEND_KERNEL, SPRAY_KERNEL, SPRAY_LIGHT_KERNEL, SPRAY_MAP_KERNEL,
+};
+use downpour_trace::gpu::ScenePipeline;
+use downpour_trace::scene::SceneView;
+
+use super::{ABOVE, BESIDE, INSIDE, LEVEL, Placement, Prepared, SIZE, run};
+use crate::Domain::Uniform;
+use crate::function::Run;
+use crate::kept::kept;
+use crate::words::IntoWords as _;
+use crate::{FunctionCase, KernelCase, Tol};
+
+/// Part of the spray that is compared.
+#[derive(Clone, Copy, PartialEq)]
+enum Part {
+    Map,
+    Depths,
+    Picked,
+    Light,
+    Blend,
+}
+
+/// Spray that is thick over some decimeters.
+fn spray_case(gpu: &Gpu, placement: Placement, part: Part) -> Result<Run, GpuError> {
+    let masks = DropMasks::trace(1.333).expect("masks");
+    let spray = Some(Spray { extinction: 0.8, height_m: 0.1 });
+    let options = RainOptions { spray, ..RainOptions::default() };
+    let prepared = kept(&format!("spray {placement:?}"), || Prepared::new(placement, options, &masks));
+    let Prepared { scene, frame, rain, capture, clean } = &*prepared;
+    let view = SceneView { data: scene, frame };
+    let both =
+        [rain.lights(&view, &masks).expect("lamps"), rain.streak_lights(&view, &masks).expect("lamps")];
+    let (scenes, rains) = (ScenePipeline::new(gpu)?, RainPipeline::new(gpu)?);
+    let uploaded = scenes.upload(scene)?;
+    let clean_buffer = gpu.storage_buffer("clean", clean)?;
+    let plate = scenes.plate(gpu, &uploaded, frame, &rains, rain)?;
+    let pass = rains.prepare(gpu, &plate.of(&clean_buffer), &rains.upload(&masks)?, rain, &both)?;
+    gpu.submit(&plate.dispatches(&pass))?;
+    gpu.submit(&[pass.open_air()])?;
+    gpu.submit(&pass.binning().concat())?;
+    gpu.submit(&[pass.lamps(), pass.streaks(), pass.medium(), vec![pass.drops()]].concat())?;
+    let mut layer = pass.layer()?;
+    gpu.submit(&pass.spray())?;
+    let (words, found) = pass.spray_found()?;
+    let spray = rain.spray.expect("spray");
+    // What is worked out from the device's own map and findings differs by nothing else.
+    let map = SprayMap { words };
+    let numbers =
+        |rows: &[[f32; 4]], first: usize| rows.iter().skip(first).step_by(2).copied().collect::<Vec<_>>();
+    match part {
+        Part::Map => {
+            let own = SprayMap::new(&spray, &view);
+            let some =
+                |words: &[f32]| words.as_chunks::<4>().0.iter().step_by(13).copied().collect::<Vec<_>>();
+            Ok(run(128, &some(&own.words), &some(&map.words)))
+        }
+        Part::Depths => {
+            let own = SprayView { frame: &spray, map: &map }.found(&frame.camera, &rain.medium, clean);
+            let of = |rows: &[[f32; 4]]| {
+                numbers(rows, 0).iter().map(|row| [row[3], 0.0, 0.0, 0.0]).collect::<Vec<_>>()
+            };
+            Ok(run(SIZE[0], &of(&own), &of(&found)))
+        }
+        Part::Picked => {
+            let own = SprayView { frame: &spray, map: &map }.found(&frame.camera, &rain.medium, clean);
+            // Means over blocks: which part chance picks may differ, where light is taken out may not.
+            let blocks = |rows: &[[f32; 4]]| {
+                let mut sums = vec![[0.0; 4]; (SIZE[0] / 16 * (SIZE[1] / 16)) as usize];
+                for (i, row) in (0..).zip(numbers(rows, 1)) {
+                    let block = i / SIZE[0] / 16 * (SIZE[0] / 16) + i % SIZE[0] / 16;
+                    sums[block as usize][0] += row[3] / 256.0;
+                }
+                sums
+            };
+            Ok(run(SIZE[0] / 16, &blocks(&own), &blocks(&found)))
+        }
+        Part::Light => {
+            let mut own: Vec<[f32; 4]> = found.iter().map(|row| [0.0, 0.0, 0.0, row[3]]).collect();
+            rain.medium_light(&both[0]).light_spray(&mut own);
+            let of = |rows: &[[f32; 4]]| [numbers(rows, 0), numbers(rows, 1)].concat();
+            Ok(run(SIZE[0], &of(&own), &of(&found)))
+        }
+        Part::Blend => {
+            let table = rain.streak_table(&masks, capture, &both[1].light(&rain.streak_rows()));
+            rain.blend_spray(&found, (capture, &table), &mut layer);
+            Ok(run(SIZE[0], &layer, &pass.layer()?))
+        }
+    }
+}
+
+/// The cases.
+pub(in crate::cases) fn functions() -> Vec<FunctionCase> {
+    vec![
+        FunctionCase::new(
+            "spray_between",
+            &SPRAY,
+            &[Uniform(-3.0, 9.0), Uniform(-3.0, 9.0)],
+            Tol::relative(1.0e-4, 1.0e-7, "exponentials, and their difference from 1 from 0.02 on (5e-5)"),
+            |a| spray_between(a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "spray_border",
+            &SPRAY,
+            &[Uniform(0.0, 512.0), Uniform(-40.0, 40.0)],
+            Tol::relative(1.0e-4, 1.0e-4, "a difference of numbers up to 512, over a rate")
+                .with_outliers(2.0e-3),
+            |a| spray_border(a.f32(), a.f32()).words(),
+        ),
+    ]
+}
+
+const MAPPED: Tol =
+    Tol::relative(1.0e-5, 3.0e-4, "the end of a ray of 1 km; a ray at an edge may fall on either side")
+        .with_outliers(2.0e-3);
+
+const FOLLOWED: Tol = Tol::relative(
+    2.0e-3,
+    2.0e-4,
+    "a sum over hundreds of parts of exponentials; a ray in a border may be in either of two cells",
+)
+.with_outliers(2.0e-3);
+
+const PICKED: Tol = Tol::relative(
+    5.0e-2,
+    1.0e-3,
+    "means of 256 places, some of which a number picks in another part of their rays",
+);
+
+const LIT: Tol = Tol::relative(
+    3.0e-3,
+    1.0e-4,
+    "differences of a table between angles (atan2, 4096 ulp); a ray at an edge, or a number, may fall on either side",
+)
+.with_outliers(1.0e-2);
+
+const BLENDED: Tol =
+    Tol::relative(2.0e-3, 1.0e-4, "means of the capture in a table, and a mean of 49 pixels")
+        .with_outliers(2.0e-3);
+
+/// The cases.
+pub(in crate::cases) fn kernels() -> Vec<KernelCase> {
+    let case = |name, kernel: &'static Kernel, tol, run| KernelCase {
+        name,
+        kernel,
+        with: &[],
+        overrides: &[],
+        text: None,
+        tol,
+        run,
+    };
+    vec![
+        case("main_spray_map: what rain hits", &SPRAY_MAP_KERNEL, MAPPED, |gpu| {
+            spray_case(gpu, LEVEL, Part::Map)
+        }),
+        case("main_spray: level, behind a pane", &SPRAY_KERNEL, FOLLOWED, |gpu| {
+            spray_case(gpu, LEVEL, Part::Depths)
+        }),
+        case("main_spray: from above", &SPRAY_KERNEL, FOLLOWED, |gpu| spray_case(gpu, ABOVE, Part::Depths)),
+        case("main_spray: among drops", &SPRAY_KERNEL, FOLLOWED, |gpu| spray_case(gpu, INSIDE, Part::Depths)),
+        case("main_spray: places", &SPRAY_KERNEL, PICKED, |gpu| spray_case(gpu, LEVEL, Part::Picked)),
+        case("main_spray_light: lamps and sun", &SPRAY_LIGHT_KERNEL, LIT, |gpu| {
+            spray_case(gpu, LEVEL, Part::Light)
+        }),
+        case("main_spray_light: many lamps", &SPRAY_LIGHT_KERNEL, LIT, |gpu| {
+            spray_case(gpu, BESIDE, Part::Light)
+        }),
+        case("main_spray_blend: many lamps", &SPRAY_BLEND_KERNEL, BLENDED, |gpu| {
+            spray_case(gpu, BESIDE, Part::Blend)
+        }),
+    ]
+}
