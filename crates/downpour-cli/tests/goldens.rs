@@ -36,7 +36,7 @@ impl Golden {
 }
 
 /// All of them.
-const GOLDENS: [Golden; 18] = [
+const GOLDENS: [Golden; 19] = [
     Golden::picture("day"),
     Golden {
         name: "day_layers",
@@ -58,6 +58,7 @@ const GOLDENS: [Golden; 18] = [
     Golden::picture("fog"),
     Golden { options: &["--time", "31"], ..Golden::picture("shower") },
     Golden::picture("drips"),
+    Golden::picture("spray"),
     Golden::picture("lightning"),
     Golden::picture("puddles"),
     Golden::picture("windshield"),

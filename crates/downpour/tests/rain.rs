@@ -12,7 +12,7 @@ use downpour::rain::{
 use downpour::render::camera::{EyeMotion, Viewpoint};
 use downpour::render::light::LightSource;
 use downpour::trace::data::SceneData;
-use downpour::weather::Look;
+use downpour::weather::{Look, Spray};
 use glam::Vec3;
 
 const SIZE: [u32; 2] = [160, 90];
@@ -210,6 +210,8 @@ fn expected(rain: &Rain, view: &RainView, wall_m: f32, obstacles: &[[[f32; 3]; 3
 /// The same among the obstacles of a scene.
 fn expected_among(rain: &Rain, view: &RainView, wall_m: f32, scene: &SceneData) -> Vec<[f32; 4]> {
     use downpour::drop::oscillation::{Amplitudes, Fluids};
+    use downpour::drop::splash::SplashLaw;
+    use downpour::drop::spray::Spray;
     use downpour::render::host::{HostEnvironment, HostEnvironmentFrame, HostPlateFrame, host_plate};
     use downpour::render::picture::compose_pixel;
     use downpour::render::rain::{DropMasks, EnvironmentMap, Exposure, MediumOptions, Rain as PictureRain};
@@ -236,6 +238,14 @@ fn expected_among(rain: &Rain, view: &RainView, wall_m: f32, scene: &SceneData) 
             seed: settings.seed,
             ..Exposure::default()
         },
+        spray: settings.spray.is_enabled.then(|| {
+            let law = SplashLaw::new(settings.splashes.film_m, settings.air.temperature_c())
+                .expect("it is possible");
+            let (droplet, height) = (settings.spray.droplet_m, settings.spray.height_m);
+            let mut spray = Spray::of_rain(&sizes, &law, droplet, height).expect("it is possible");
+            spray.extinction *= settings.look.spray;
+            spray
+        }),
         ..RainOptions::default()
     };
     let camera = view.camera.camera(SIZE, 0).expect("it is possible");
@@ -439,6 +449,40 @@ fn drops_fall_through_the_holes_of_obstacles() {
 fn ground() -> [[[f32; 3]; 3]; 2] {
     let [a, b, c, d] = [[-40.0, 0.0, -40.0], [-40.0, 0.0, 40.0], [40.0, 0.0, 40.0], [40.0, 0.0, -40.0]];
     [[a, b, c], [a, c, d]]
+}
+
+/// Spray stands over obstacles, as on the CPU, and makes no buffer after the first frame.
+#[test]
+fn spray_stands_over_obstacles() {
+    let Some(gpu) = device() else { return };
+    let spray = Spray { is_enabled: true, height_m: 0.3, ..Spray::default() };
+    let wet = RainSettings { spray, look: Look { spray: 4.0, ..Look::PHYSICAL }, ..settings() };
+    let mut rain = Rain::new(gpu.device(), gpu.queue(), wet).unwrap();
+    let host = Host::new(&gpu, SIZE, wgpu::TextureFormat::Rgba16Float);
+    let lamp = [LightSource::Point {
+        radius: 0.0,
+        position: Vec3::new(1.0, 3.0, -8.0),
+        intensity: Vec3::splat(60.0),
+        range: 0.0,
+    }];
+    rain.set_obstacles(&ground()).unwrap();
+    let made = host.rain(&mut rain, &view(), 6.0, &[]).unwrap();
+    let expected = expected(&rain, &view(), 6.0, &ground());
+    assert!((mean(&made) / mean(&expected) - 1.0).abs() < 2.0e-3, "{} {}", mean(&made), mean(&expected));
+    let lit = host.rain(&mut rain, &view(), 6.0, &lamp).unwrap();
+    rain.set_settings(settings()).unwrap();
+    let without = host.rain(&mut rain, &view(), 6.0, &[]).unwrap();
+    let lit_without = host.rain(&mut rain, &view(), 6.0, &lamp).unwrap();
+    // The ground's mist hides the wall, and is seen in the lamp's light.
+    let changed = made.iter().zip(&without).filter(|(a, b)| (a[0] - b[0]).abs() > 4.0e-3).count();
+    assert!(changed > made.len() / 20, "{changed} pixels differ");
+    let more = (mean(&lit) - mean(&made)) / (mean(&lit_without) - mean(&without));
+    assert!(more > 1.05, "{more}");
+    // Without obstacles there is none.
+    rain.set_obstacles(&[]).unwrap();
+    let dry = host.rain(&mut rain, &view(), 6.0, &[]).unwrap();
+    rain.set_settings(RainSettings { spray, ..settings() }).unwrap();
+    assert!(host.rain(&mut rain, &view(), 6.0, &[]).unwrap() == dry);
 }
 
 #[test]

@@ -72,7 +72,7 @@ pub static SPRAY_MAP: Module = Module {
 pub static SPRAY: Module = Module {
     path: "render/spray.wgsl",
     wgsl: include_str!("../../wgsl/render/spray.wgsl"),
-    uses: &[&SPRAY_CONSTANTS, &SPRAY_FRAME, &DATA, &CAMERA, &MEDIUM, &PATH_LATTICE, &RNG],
+    uses: &[&SPRAY_CONSTANTS, &SPRAY_FRAME, &DATA, &CAMERA, &MEDIUM],
 };
 
 /// Light of lamps on spray. Twin: `downpour_render::rain::spray::light`.

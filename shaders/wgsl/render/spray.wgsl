@@ -7,8 +7,8 @@
 
 @group(0) @binding(6) var<storage, read> spray_clean: array<vec4f>;
 @group(0) @binding(7) var<storage, read> spray_map: array<f32>;
-// For each pixel two: light of lamps if nothing hid them, and optical depth; light of lamps that one ray has seen, and the distance of a
-// place that chance picks by the light that it would give.
+// For each pixel two: light of lamps if nothing hid them, and as halves optical depth and share of the nearer place; light of lamps that one ray
+// has seen, and as halves the distances of the two places that stand for the spray.
 @group(0) @binding(8) var<storage, read_write> spray_found: array<vec4f>;
 
 // Position in texels of a square of a point `way` from another of the plane: the difference from the square's corner first, which has more digits.
@@ -66,7 +66,7 @@ fn spray_border(texel: f32, rate: f32) -> f32 {
 fn spray_between(a: f32, b: f32) -> f32 {
     let low = min(a, b);
     let high = max(a, b);
-    if high <= 0.0 {
+    if high < 0.0 {
         return 0.0;
     }
     let above = select(1.0, high / (high - low), low < 0.0);
@@ -80,9 +80,38 @@ fn spray_between(a: f32, b: f32) -> f32 {
     return above * exp(-foot) * mean;
 }
 
-// Optical depth of spray along a ray of unit direction from the eye between two distances, and a distance that a number of [0, 1) picks by
-// the light that is taken out there.
-fn spray_along(direction: vec3f, begin: f32, end: f32, number: f32) -> vec2f {
+// Spray along a ray: its optical depth, and two places that have the mean, the variance and the third moment of the distances at which light
+// is taken out (Gauss's rule of two points): what is on two surfaces has a place on each.
+struct SprayAlong {
+    depth: f32,
+    near: f32,
+    far: f32,
+    // Share of the nearer one, 0 to 1.
+    share: f32,
+}
+
+// Two places of a weight and of moments of the distance from the first place.
+fn spray_places(depth: f32, first: f32, last: f32, moments: vec4f) -> SprayAlong {
+    if moments.x <= 0.0 {
+        return SprayAlong(depth, first, first, 1.0);
+    }
+    let mean = moments.y / moments.x;
+    let square = moments.z / moments.x;
+    let variance = max(square - mean * mean, 0.0);
+    let spread = sqrt(variance);
+    if spread <= 1.0e-3 * (last - first) {
+        return SprayAlong(depth, first + mean, first + mean, 1.0);
+    }
+    let third = moments.w / moments.x - mean * (3.0 * square - 2.0 * mean * mean);
+    let lean = clamp(third / (variance * spread), -1.0e3, 1.0e3) * 0.5;
+    let root = sqrt(1.0 + lean * lean);
+    let near = clamp(first + mean + spread * (lean - root), first, last);
+    let far = clamp(first + mean + spread * (lean + root), first, last);
+    return SprayAlong(depth, near, far, 0.5 * (1.0 + lean / root));
+}
+
+// Spray along a ray of unit direction from the eye between two distances.
+fn spray_along(direction: vec3f, begin: f32, end: f32) -> SprayAlong {
     let eye = spray_frame.eye;
     let lean = spray_frame.lean;
     let foot = eye.xz - lean * eye.y;
@@ -92,10 +121,10 @@ fn spray_along(direction: vec3f, begin: f32, end: f32, number: f32) -> vec2f {
     var level = 0u;
     var at = begin;
     var depth = 0.0;
-    // Light that is taken out so far, if all parts were thin.
-    var taken = 0.0;
-    var picked = begin;
-    var rest = number;
+    // Weight and moments of the distance from the first place where there is some.
+    var moments = vec4f(0.0);
+    var first = begin;
+    var last = begin;
     // Height of the ray over the surface, and whether it is known.
     var gap = 0.0;
     var known = false;
@@ -126,31 +155,27 @@ fn spray_along(direction: vec3f, begin: f32, end: f32, number: f32) -> vec2f {
         let there = eye.y + direction.y * next - spray_height(level, texel + speed * way);
         let part = spray_frame.extinction * spray_between(gap / spray_frame.height, there / spray_frame.height) * way;
         if part > 0.0 {
-            let here = part * exp(-depth - 0.5 * part);
-            depth += part;
-            taken += here;
-            let chance = here / max(taken, 1.0e-30);
-            if rest < chance {
-                // The part of the interval that is left is as good as a new number.
-                rest /= chance;
-                picked = at + way * rest;
-            } else {
-                rest = (rest - chance) / max(1.0 - chance, 1.0e-9);
+            let weight = part * exp(-depth - 0.5 * part);
+            last = at + 0.5 * way;
+            if depth <= 0.0 {
+                first = last;
             }
+            let x = last - first;
+            moments += weight * vec4f(1.0, x, x * x, x * x * x);
+            depth += part;
         }
         at = next;
         gap = there;
         known = true;
     }
-    return vec2f(depth, picked);
+    return spray_places(depth, first, last, moments);
 }
 
-// Optical depth of spray before a pixel, and the distance of a place of it.
-fn spray_pixel(x: u32, y: u32) -> vec2f {
+// Spray before a pixel.
+fn spray_pixel(x: u32, y: u32) -> SprayAlong {
     let scene = spray_clean[y * render_frame.camera.width + x].w;
     let direction = camera_direction(render_frame.camera, f32(x) + 0.5, f32(y) + 0.5);
-    let number = rng_unit(path_lattice_words(x, y, SPRAY_LATTICE).x);
-    return spray_along(direction, medium_begin(direction), min(scene, SPRAY_FAR), number);
+    return spray_along(direction, medium_begin(direction), min(scene, SPRAY_FAR));
 }
 
 @compute @workgroup_size(8, 8, 1)
@@ -158,7 +183,8 @@ fn main_spray(@builtin(global_invocation_id) id: vec3u) {
     if id.x < render_frame.camera.width && id.y < render_frame.camera.height {
         let found = spray_pixel(id.x, id.y);
         let at = 2u * (id.y * render_frame.camera.width + id.x);
-        spray_found[at] = vec4f(0.0, 0.0, 0.0, found.x);
-        spray_found[at + 1u] = vec4f(0.0, 0.0, 0.0, found.y);
+        let halves = vec2u(pack2x16float(vec2f(min(found.depth, 6.0e4), found.share)), pack2x16float(vec2f(min(found.near, 6.0e4), min(found.far, 6.0e4))));
+        spray_found[at] = vec4f(0.0, 0.0, 0.0, bitcast<f32>(halves.x));
+        spray_found[at + 1u] = vec4f(0.0, 0.0, 0.0, bitcast<f32>(halves.y));
     }
 }

@@ -6,6 +6,13 @@
 // The rain: radiance, and the transmittance of the scene behind it.
 @group(0) @binding(3) var<storage, read_write> spray_blend_layer: array<vec4f>;
 
+// Optical depth of the spray that was found at a row, and its mean distance.
+fn spray_blend_place(row: u32) -> vec2f {
+    let pair = unpack2x16float(bitcast<u32>(spray_blend_found[row].w));
+    let places = unpack2x16float(bitcast<u32>(spray_blend_found[row + 1u].w));
+    return vec2f(pair.x, places.x * pair.y + places.y * (1.0 - pair.y));
+}
+
 // Light of lamps on the spray before a pixel, as far as it is seen.
 fn spray_blend_light(x: u32, y: u32) -> vec3f {
     let width = drops_frame.camera.width;
@@ -14,16 +21,16 @@ fn spray_blend_light(x: u32, y: u32) -> vec3f {
     if light_weight(whole) <= 0.0 {
         return vec3f(0.0);
     }
-    let distance = spray_blend_found[own + 1u].w;
+    let distance = spray_blend_place(own).y;
     var all = vec3f(0.0);
     var seen = vec3f(0.0);
     let reach = SKYLIGHT_RADIUS;
     for (var row = max(y, reach) - reach; row <= min(y + reach, drops_frame.camera.height - 1u); row += 1u) {
         for (var column = max(x, reach) - reach; column <= min(x + reach, width - 1u); column += 1u) {
             let other = 2u * (row * width + column);
-            let far = spray_blend_found[other + 1u].w;
-            let weight = max(1.0 - abs(distance - far) / (SPRAY_ALIKE * max(max(distance, far), 1.0e-6)), 0.0);
-            if weight > 0.0 && spray_blend_found[other].w > 0.0 {
+            let place = spray_blend_place(other);
+            let weight = max(1.0 - abs(distance - place.y) / (SPRAY_ALIKE * max(max(distance, place.y), 1.0e-6)), 0.0);
+            if weight > 0.0 && place.x > 0.0 {
                 all += spray_blend_found[other].rgb * weight;
                 seen += spray_blend_found[other + 1u].rgb * weight;
             }
@@ -34,7 +41,7 @@ fn spray_blend_light(x: u32, y: u32) -> vec3f {
 
 // The rain of a pixel with the spray behind it.
 fn spray_blend_pixel(x: u32, y: u32, rain: vec4f) -> vec4f {
-    let depth = spray_blend_found[2u * (y * drops_frame.camera.width + x)].w;
+    let depth = spray_blend_place(2u * (y * drops_frame.camera.width + x)).x;
     if depth <= 0.0 {
         return rain;
     }

@@ -1,6 +1,7 @@
 // Light of lamps and sun that spray scatters toward the eye, over the part of the light behind it that it takes out.
-// Law: single scattering at a place that chance picks along the ray (spray.wgsl), with the phase function of a drop. Occlusion is tested with one
-// ray per pixel, to a lamp that is drawn by the light that it would give; the mean over the pixels around it is taken by spray_blend.wgsl.
+// Law: single scattering at the two places that stand for the spray of a ray (spray.wgsl), with the phase function of a drop. Occlusion is
+// tested with one ray per pixel, to a lamp from a place that are drawn by the light that they would give; the mean over the pixels around it is
+// taken by spray_blend.wgsl.
 // Twin: downpour_render::rain::spray::light.
 
 @group(0) @binding(8) var<storage, read_write> spray_light_found: array<vec4f>;
@@ -16,52 +17,66 @@ fn spray_light_lamp(lamp: RenderLight, place: vec3f, direction: vec3f) -> vec3f 
     return light.irradiance * 3.1415927 * phase.rgb;
 }
 
-// Light of all lamps at a place of a ray if nothing hid them, and the part of it that comes from one, which a number of [0, 1) draws; that lamp.
+// Light of all lamps on spray if nothing hid them, and the part of it that comes from one of them to one place.
 struct SprayLight {
     whole: vec3f,
+    // Part of the random number that is left.
+    rest: f32,
     drawn: vec3f,
     lamp: u32,
+    // Distance of that place.
+    at: f32,
 }
 
-fn spray_light_at(place: vec3f, direction: vec3f, number: f32) -> SprayLight {
-    var sum = SprayLight(vec3f(0.0), vec3f(0.0), 0u);
-    var rest = number;
+// Adds the light of all lamps at a place of a ray, of which a share counts.
+fn spray_light_add(sum: SprayLight, direction: vec3f, at: f32, share: f32) -> SprayLight {
+    var next = sum;
+    if share <= 0.0 {
+        return next;
+    }
     for (var k = 0u; k < render_frame.light_count; k += 1u) {
-        let given = spray_light_lamp(light_load(k), place, direction);
+        let given = spray_light_lamp(light_load(k), medium_frame.eye + direction * at, direction) * share;
         let fraction = light_weight(given);
         if fraction > 0.0 {
-            sum.whole += given;
-            let chance = fraction / light_weight(sum.whole);
-            if rest < chance {
-                rest /= chance;
-                sum.drawn = given;
-                sum.lamp = k;
+            next.whole += given;
+            let chance = fraction / light_weight(next.whole);
+            if next.rest < chance {
+                // The part of the interval that is left is as good as a new number.
+                next.rest /= chance;
+                next.drawn = given;
+                next.lamp = k;
+                next.at = at;
             } else {
-                rest = (rest - chance) / max(1.0 - chance, 1.0e-9);
+                next.rest = (next.rest - chance) / max(1.0 - chance, 1.0e-9);
             }
         }
     }
-    return sum;
+    return next;
 }
 
 // Light on the spray before a pixel.
 fn spray_light_pixel(x: u32, y: u32) {
-    let at = 2u * (y * render_frame.camera.width + x);
-    if spray_light_found[at].w <= 0.0 || medium_frame.lit == MEDIUM_DARK {
+    let index = 2u * (y * render_frame.camera.width + x);
+    let halves = vec2u(bitcast<u32>(spray_light_found[index].w), bitcast<u32>(spray_light_found[index + 1u].w));
+    // Optical depth and share of the nearer place.
+    let pair = unpack2x16float(halves.x);
+    if pair.x <= 0.0 || medium_frame.lit == MEDIUM_DARK {
         return;
     }
+    let places = unpack2x16float(halves.y);
     let direction = camera_direction(render_frame.camera, f32(x) + 0.5, f32(y) + 0.5);
-    let place = medium_frame.eye + direction * spray_light_found[at + 1u].w;
-    let number = rng_unit(path_lattice_words(x, y, SPRAY_LATTICE).y);
-    let sum = spray_light_at(place, direction, number);
+    var sum = SprayLight(vec3f(0.0), rng_unit(path_lattice_words(x, y, SPRAY_LATTICE).x), vec3f(0.0), 0u, 0.0);
+    sum = spray_light_add(sum, direction, places.x, pair.y);
+    sum = spray_light_add(sum, direction, places.y, 1.0 - pair.y);
     let fraction = light_weight(sum.drawn);
     var seen = vec3f(0.0);
     if fraction > 0.0 {
+        let place = medium_frame.eye + direction * sum.at;
         let light = light_sample(light_load(sum.lamp), place, SPRAY_LAMP_MIN);
         seen = scene_visibility(place, light.direction, light.distance) * sum.drawn * (light_weight(sum.whole) / fraction);
     }
-    spray_light_found[at] = vec4f(sum.whole, spray_light_found[at].w);
-    spray_light_found[at + 1u] = vec4f(seen, spray_light_found[at + 1u].w);
+    spray_light_found[index] = vec4f(sum.whole, spray_light_found[index].w);
+    spray_light_found[index + 1u] = vec4f(seen, spray_light_found[index + 1u].w);
 }
 
 @compute @workgroup_size(8, 8, 1)

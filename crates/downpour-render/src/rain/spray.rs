@@ -13,17 +13,16 @@ mod map;
 use bytemuck::{Pod, Zeroable};
 use downpour_drop::spray::Spray;
 use downpour_math::ops;
-use downpour_math::rng::rng_unit;
+use downpour_math::packing::packing_pack_half;
 use downpour_shaders::render::spray::{
-    SPRAY_AHEAD, SPRAY_CELL, SPRAY_CELLS, SPRAY_EDGE, SPRAY_FAR, SPRAY_LATTICE, SPRAY_LEVELS, SPRAY_REACH,
-    SPRAY_SIZE, SPRAY_TOP, SPRAY_TURNS, SPRAY_WIDER,
+    SPRAY_AHEAD, SPRAY_CELL, SPRAY_CELLS, SPRAY_EDGE, SPRAY_FAR, SPRAY_LEVELS, SPRAY_REACH, SPRAY_SIZE,
+    SPRAY_TOP, SPRAY_TURNS, SPRAY_WIDER,
 };
 use glam::{Vec2, Vec3, Vec3Swizzles as _, Vec4};
 use rayon::prelude::*;
 
 use super::medium::{MediumFrame, RainMedium};
 use crate::camera::Camera;
-use crate::path_lattice::path_lattice_words;
 pub(super) use blend::SprayBlend;
 pub use map::SprayMap;
 
@@ -132,10 +131,9 @@ impl SprayView<'_> {
         near.max(at(cell[0], next[1]).max(at(next[0], next[1])))
     }
 
-    /// Optical depth of spray along a ray of unit direction from the eye between two distances, and a distance that a number of [0, 1) picks
-    /// by the light that is taken out there.
+    /// Spray along a ray of unit direction from the eye between two distances.
     #[must_use]
-    pub fn spray_along(&self, direction: Vec3, begin: f32, end: f32, number: f32) -> Vec2 {
+    pub fn spray_along(&self, direction: Vec3, begin: f32, end: f32) -> SprayAlong {
         let frame = self.frame;
         let (eye, lean) = (Vec3::from(frame.eye), Vec2::from(frame.lean));
         let foot = eye.xz() - lean * eye.y;
@@ -143,9 +141,9 @@ impl SprayView<'_> {
         let pace = rate.dot(rate).sqrt();
         let reach = SPRAY_REACH * frame.height;
         let (mut level, mut at, mut depth) = (0, begin, 0.0f32);
-        // Light that is taken out so far, if all parts were thin.
-        let mut taken = 0.0f32;
-        let (mut picked, mut rest) = (begin, number);
+        // Weight and moments of the distance from the first place where there is some.
+        let mut moments = Vec4::ZERO;
+        let (mut first, mut last) = (begin, begin);
         // Height of the ray over the surface, where it is known.
         let mut known: Option<f32> = None;
         for _ in 0..SPRAY_TURNS {
@@ -179,41 +177,76 @@ impl SprayView<'_> {
             let there = eye.y + direction.y * next - self.spray_height(level, texel + speed * way);
             let part = frame.extinction * spray_between(gap / frame.height, there / frame.height) * way;
             if part > 0.0 {
-                let here = part * ops::exp(-depth - 0.5 * part);
-                depth += part;
-                taken += here;
-                let chance = here / taken.max(1.0e-30);
-                if rest < chance {
-                    rest /= chance;
-                    picked = at + way * rest;
-                } else {
-                    rest = (rest - chance) / (1.0 - chance).max(1.0e-9);
+                let weight = part * ops::exp(-depth - 0.5 * part);
+                last = at + 0.5 * way;
+                if depth <= 0.0 {
+                    first = last;
                 }
+                let x = last - first;
+                moments += weight * Vec4::new(1.0, x, x * x, x * x * x);
+                depth += part;
             }
             at = next;
             known = Some(there);
         }
-        Vec2::new(depth, picked)
+        spray_places(depth, first, last, moments)
     }
 
-    /// Optical depth of spray before a pixel, and the distance of a place of it.
-    fn spray_pixel(&self, camera: &Camera, medium: &MediumFrame, scene: f32, x: u32, y: u32) -> Vec2 {
+    /// Spray before a pixel.
+    fn spray_pixel(&self, camera: &Camera, medium: &MediumFrame, scene: f32, x: u32, y: u32) -> SprayAlong {
         let direction = camera.camera_direction(x as f32 + 0.5, y as f32 + 0.5);
-        let number = rng_unit(path_lattice_words(camera.seed, x, y, SPRAY_LATTICE)[0]);
-        self.spray_along(direction, medium.medium_begin(direction), scene.min(SPRAY_FAR), number)
+        self.spray_along(direction, medium.medium_begin(direction), scene.min(SPRAY_FAR))
     }
 
-    /// Spray before each pixel of a plate with its distances, two rows for each, without light: the fourth numbers are the optical depth, and
-    /// the distance of a place that chance picks. The same bits for any number of threads.
+    /// Spray before each pixel of a plate with its distances, two rows for each, without light: the fourth numbers are halves, optical depth and
+    /// share of the nearer place, and the distances of both places. The same bits for any number of threads.
     #[must_use]
     pub fn found(&self, camera: &Camera, medium: &MediumFrame, clean: &[[f32; 4]]) -> Vec<[f32; 4]> {
         let pixel = |(index, clean): (usize, &[f32; 4])| {
             let [x, y] = [index as u32 % camera.width, index as u32 / camera.width];
             let found = self.spray_pixel(camera, medium, clean[3], x, y);
-            [Vec4::new(0.0, 0.0, 0.0, found.x).to_array(), Vec4::new(0.0, 0.0, 0.0, found.y).to_array()]
+            [[found.depth.min(6.0e4), found.share], [found.near.min(6.0e4), found.far.min(6.0e4)]]
+                .map(|halves| [0.0, 0.0, 0.0, f32::from_bits(packing_pack_half(halves))])
         };
         clean.par_iter().enumerate().flat_map_iter(pixel).collect()
     }
+}
+
+/// Spray along a ray: its optical depth, and two places that have the mean, the variance and the third moment of the distances at which light is
+/// taken out (Gauss's rule of two points): what is on two surfaces has a place on each. The same layout as `SprayAlong` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct SprayAlong {
+    /// Optical depth.
+    pub depth: f32,
+    /// Distance of the nearer place, m.
+    pub near: f32,
+    /// Distance of the farther one, m.
+    pub far: f32,
+    /// Share of the nearer one, 0 to 1.
+    pub share: f32,
+}
+
+/// Two places of a weight and of moments of the distance from the first place.
+#[must_use]
+pub fn spray_places(depth: f32, first: f32, last: f32, moments: Vec4) -> SprayAlong {
+    let at_one = |place| SprayAlong { depth, near: place, far: place, share: 1.0 };
+    if moments.x <= 0.0 {
+        return at_one(first);
+    }
+    let mean = moments.y / moments.x;
+    let square = moments.z / moments.x;
+    let variance = (square - mean * mean).max(0.0);
+    let spread = variance.sqrt();
+    if spread <= 1.0e-3 * (last - first) {
+        return at_one(first + mean);
+    }
+    let third = moments.w / moments.x - mean * (3.0 * square - 2.0 * mean * mean);
+    let lean = (third / (variance * spread)).clamp(-1.0e3, 1.0e3) * 0.5;
+    let root = (1.0 + lean * lean).sqrt();
+    let near = (first + mean + spread * (lean - root)).clamp(first, last);
+    let far = (first + mean + spread * (lean + root)).clamp(first, last);
+    SprayAlong { depth, near, far, share: 0.5 * (1.0 + lean / root) }
 }
 
 /// Way along a coordinate in texels that changes by `rate` a meter, in meters, to the border of its cell. What is on a border is in the cell
@@ -238,7 +271,7 @@ fn sign(of: Vec2) -> Vec2 {
 #[must_use]
 pub fn spray_between(a: f32, b: f32) -> f32 {
     let (low, high) = (a.min(b), a.max(b));
-    if high <= 0.0 {
+    if high < 0.0 {
         return 0.0;
     }
     let above = if low < 0.0 { high / (high - low) } else { 1.0 };
@@ -264,6 +297,25 @@ mod tests {
         // Where the series ends.
         let [series, formula] = [0.019_99, 0.020_01].map(|gap| spray_between(gap, 0.0));
         assert!((series - formula).abs() < 2.0e-5 && series > formula);
+    }
+
+    /// Light that is taken out at two distances has its two places there, with their shares; and of an even part of a ray those of Gauss's rule.
+    #[test]
+    fn two_places_stand_for_all() {
+        let of = |parts: &[(f32, f32)]| {
+            let add =
+                |sum: Vec4, &(x, weight): &(f32, f32)| sum + weight * Vec4::new(1.0, x, x * x, x * x * x);
+            spray_places(0.5, 4.0, 4.0 + parts[parts.len() - 1].0, parts.iter().fold(Vec4::ZERO, add))
+        };
+        let two = of(&[(0.0, 0.3), (16.0, 0.1)]);
+        assert!((two.near - 4.0).abs() < 1.0e-3 && (two.far - 20.0).abs() < 1.0e-3, "{two:?}");
+        assert!((two.share - 0.75).abs() < 1.0e-4, "{two:?}");
+        let even: Vec<_> = (0..1000).map(|k| (k as f32 / 999.0, 1.0)).collect();
+        let gauss = of(&even);
+        let aside = 0.5 / 3.0f32.sqrt();
+        assert!((gauss.near - 4.5 + aside).abs() < 1.0e-3 && (gauss.far - 4.5 - aside).abs() < 1.0e-3);
+        assert!((gauss.share - 0.5).abs() < 1.0e-3);
+        assert_eq!(of(&[(0.0, 1.0)]), SprayAlong { depth: 0.5, near: 4.0, far: 4.0, share: 1.0 });
     }
 
     #[test]

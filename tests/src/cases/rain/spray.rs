@@ -2,6 +2,7 @@
 
 use downpour_drop::spray::Spray;
 use downpour_gpu::{Gpu, GpuError};
+use downpour_math::packing::packing_unpack_half;
 use downpour_render::gpu::RainPipeline;
 use downpour_render::rain::spray::{SprayMap, SprayView, spray_between, spray_border};
 use downpour_render::rain::{DropMasks, RainOptions};
@@ -12,7 +13,7 @@ use downpour_shaders::render::spray::{
 use downpour_trace::gpu::ScenePipeline;
 use downpour_trace::scene::SceneView;
 
-use super::{ABOVE, BESIDE, INSIDE, LEVEL, Placement, Prepared, SIZE, run};
+use super::{ABOVE, BESIDE, INSIDE, LEVEL, Placement, Prepared, SEEN, SIZE, run};
 use crate::Domain::Uniform;
 use crate::function::Run;
 use crate::kept::kept;
@@ -23,9 +24,9 @@ use crate::{FunctionCase, KernelCase, Tol};
 #[derive(Clone, Copy, PartialEq)]
 enum Part {
     Map,
-    Depths,
-    Picked,
+    Found,
     Light,
+    Seen,
     Blend,
 }
 
@@ -63,31 +64,45 @@ fn spray_case(gpu: &Gpu, placement: Placement, part: Part) -> Result<Run, GpuErr
                 |words: &[f32]| words.as_chunks::<4>().0.iter().step_by(13).copied().collect::<Vec<_>>();
             Ok(run(128, &some(&own.words), &some(&map.words)))
         }
-        Part::Depths => {
+        Part::Found => {
             let own = SprayView { frame: &spray, map: &map }.found(&frame.camera, &rain.medium, clean);
+            // Optical depth; light that each place takes out, and the distances.
             let of = |rows: &[[f32; 4]]| {
-                numbers(rows, 0).iter().map(|row| [row[3], 0.0, 0.0, 0.0]).collect::<Vec<_>>()
+                let (pixels, _) = rows.as_chunks::<2>();
+                let pixel = |pixel: &[[f32; 4]; 2]| {
+                    let [[depth, share], [near, far]] =
+                        pixel.map(|row| packing_unpack_half(row[3].to_bits()));
+                    [
+                        depth,
+                        share * near + (1.0 - share) * far,
+                        share * near * near + (1.0 - share) * far * far,
+                        0.0,
+                    ]
+                };
+                pixels.iter().map(pixel).collect::<Vec<_>>()
             };
             Ok(run(SIZE[0], &of(&own), &of(&found)))
-        }
-        Part::Picked => {
-            let own = SprayView { frame: &spray, map: &map }.found(&frame.camera, &rain.medium, clean);
-            // Means over blocks: which part chance picks may differ, where light is taken out may not.
-            let blocks = |rows: &[[f32; 4]]| {
-                let mut sums = vec![[0.0; 4]; (SIZE[0] / 16 * (SIZE[1] / 16)) as usize];
-                for (i, row) in (0..).zip(numbers(rows, 1)) {
-                    let block = i / SIZE[0] / 16 * (SIZE[0] / 16) + i % SIZE[0] / 16;
-                    sums[block as usize][0] += row[3] / 256.0;
-                }
-                sums
-            };
-            Ok(run(SIZE[0] / 16, &blocks(&own), &blocks(&found)))
         }
         Part::Light => {
             let mut own: Vec<[f32; 4]> = found.iter().map(|row| [0.0, 0.0, 0.0, row[3]]).collect();
             rain.medium_light(&both[0]).light_spray(&mut own);
-            let of = |rows: &[[f32; 4]]| [numbers(rows, 0), numbers(rows, 1)].concat();
-            Ok(run(SIZE[0], &of(&own), &of(&found)))
+            Ok(run(SIZE[0], &numbers(&own, 0), &numbers(&found, 0)))
+        }
+        Part::Seen => {
+            let mut own: Vec<[f32; 4]> = found.iter().map(|row| [0.0, 0.0, 0.0, row[3]]).collect();
+            rain.medium_light(&both[0]).light_spray(&mut own);
+            // Means over blocks: which lamp a number draws may differ, what comes of it may not.
+            let blocks = |rows: &[[f32; 4]]| {
+                let mut sums = vec![[0.0; 4]; (SIZE[0] / 16 * (SIZE[1] / 16)) as usize];
+                for (i, row) in (0..).zip(numbers(rows, 1)) {
+                    let block = i / SIZE[0] / 16 * (SIZE[0] / 16) + i % SIZE[0] / 16;
+                    for (sum, value) in sums[block as usize].iter_mut().zip(&row[..3]) {
+                        *sum += value / 256.0;
+                    }
+                }
+                sums
+            };
+            Ok(run(SIZE[0] / 16, &blocks(&own), &blocks(&found)))
         }
         Part::Blend => {
             let table = rain.streak_table(&masks, capture, &both[1].light(&rain.streak_rows()));
@@ -125,22 +140,16 @@ const MAPPED: Tol =
 const FOLLOWED: Tol = Tol::relative(
     2.0e-3,
     2.0e-4,
-    "a sum over hundreds of parts of exponentials; a ray in a border may be in either of two cells",
+    "sums over hundreds of parts of exponentials, as halves; a ray in a border may be in either of two cells",
 )
 .with_outliers(2.0e-3);
-
-const PICKED: Tol = Tol::relative(
-    5.0e-2,
-    1.0e-3,
-    "means of 256 places, some of which a number picks in another part of their rays",
-);
 
 const LIT: Tol = Tol::relative(
     3.0e-3,
     1.0e-4,
-    "differences of a table between angles (atan2, 4096 ulp); a ray at an edge, or a number, may fall on either side",
+    "differences of a table between angles (atan2, 4096 ulp), and places as halves",
 )
-.with_outliers(1.0e-2);
+.with_outliers(2.0e-3);
 
 const BLENDED: Tol =
     Tol::relative(2.0e-3, 1.0e-4, "means of the capture in a table, and a mean of 49 pixels")
@@ -162,16 +171,18 @@ pub(in crate::cases) fn kernels() -> Vec<KernelCase> {
             spray_case(gpu, LEVEL, Part::Map)
         }),
         case("main_spray: level, behind a pane", &SPRAY_KERNEL, FOLLOWED, |gpu| {
-            spray_case(gpu, LEVEL, Part::Depths)
+            spray_case(gpu, LEVEL, Part::Found)
         }),
-        case("main_spray: from above", &SPRAY_KERNEL, FOLLOWED, |gpu| spray_case(gpu, ABOVE, Part::Depths)),
-        case("main_spray: among drops", &SPRAY_KERNEL, FOLLOWED, |gpu| spray_case(gpu, INSIDE, Part::Depths)),
-        case("main_spray: places", &SPRAY_KERNEL, PICKED, |gpu| spray_case(gpu, LEVEL, Part::Picked)),
+        case("main_spray: from above", &SPRAY_KERNEL, FOLLOWED, |gpu| spray_case(gpu, ABOVE, Part::Found)),
+        case("main_spray: among drops", &SPRAY_KERNEL, FOLLOWED, |gpu| spray_case(gpu, INSIDE, Part::Found)),
         case("main_spray_light: lamps and sun", &SPRAY_LIGHT_KERNEL, LIT, |gpu| {
             spray_case(gpu, LEVEL, Part::Light)
         }),
         case("main_spray_light: many lamps", &SPRAY_LIGHT_KERNEL, LIT, |gpu| {
             spray_case(gpu, BESIDE, Part::Light)
+        }),
+        case("main_spray_light: shadows", &SPRAY_LIGHT_KERNEL, SEEN, |gpu| {
+            spray_case(gpu, LEVEL, Part::Seen)
         }),
         case("main_spray_blend: many lamps", &SPRAY_BLEND_KERNEL, BLENDED, |gpu| {
             spray_case(gpu, BESIDE, Part::Blend)

@@ -1,9 +1,10 @@
 //! Spray behind the rain of a picture. Twin of `shaders/wgsl/render/spray_blend.wgsl`, where the method is described.
 
 use downpour_math::ops;
+use downpour_math::packing::packing_unpack_half;
 use downpour_shaders::render::scene::SKYLIGHT_RADIUS;
 use downpour_shaders::render::spray::SPRAY_ALIKE;
-use glam::{Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
 use crate::light::light_weight;
@@ -31,23 +32,30 @@ impl SprayBlend<'_> {
         [self.found[at].into(), self.found[at + 1].into()]
     }
 
+    /// Optical depth of the spray before a pixel, and its mean distance.
+    fn spray_blend_place(&self, x: u32, y: u32) -> Vec2 {
+        let [[depth, nearer], [near, far]] = self.rows(x, y).map(|row| packing_unpack_half(row.w.to_bits()));
+        Vec2::new(depth, near * nearer + far * (1.0 - nearer))
+    }
+
     /// Light of lamps on the spray before a pixel, as far as it is seen.
     fn spray_blend_light(&self, x: u32, y: u32) -> Vec3 {
         let [width, height] = self.drops.camera.size();
-        let [own, place] = self.rows(x, y);
-        let whole = own.truncate();
+        let whole = self.rows(x, y)[0].truncate();
         if light_weight(whole) <= 0.0 {
             return Vec3::ZERO;
         }
+        let distance = self.spray_blend_place(x, y).y;
         let (mut all, mut seen) = (Vec3::ZERO, Vec3::ZERO);
         for row in window(y, 1, SKYLIGHT_RADIUS, 0, height) {
             for column in window(x, 1, SKYLIGHT_RADIUS, 0, width) {
-                let [other, far] = self.rows(column, row);
-                let apart = (place.w - far.w).abs() / (SPRAY_ALIKE * place.w.max(far.w).max(1.0e-6));
+                let place = self.spray_blend_place(column, row);
+                let apart = (distance - place.y).abs() / (SPRAY_ALIKE * distance.max(place.y).max(1.0e-6));
                 let weight = (1.0 - apart).max(0.0);
-                if weight > 0.0 && other.w > 0.0 {
+                if weight > 0.0 && place.x > 0.0 {
+                    let [other, by_ray] = self.rows(column, row);
                     all += other.truncate() * weight;
-                    seen += far.truncate() * weight;
+                    seen += by_ray.truncate() * weight;
                 }
             }
         }
@@ -56,7 +64,7 @@ impl SprayBlend<'_> {
 
     /// The rain of a pixel with the spray behind it.
     fn spray_blend_pixel(&self, x: u32, y: u32, rain: Vec4) -> Vec4 {
-        let depth = self.rows(x, y)[0].w;
+        let depth = self.spray_blend_place(x, y).x;
         if depth <= 0.0 {
             return rain;
         }

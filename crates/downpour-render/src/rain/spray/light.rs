@@ -3,6 +3,7 @@
 
 use std::f32::consts::PI;
 
+use downpour_math::packing::packing_unpack_half;
 use downpour_math::rng::rng_unit;
 use downpour_shaders::render::medium::{MEDIUM_DARK, MEDIUM_SPOTS};
 use downpour_shaders::render::spray::{SPRAY_LAMP_MIN, SPRAY_LATTICE};
@@ -15,12 +16,16 @@ use crate::rain::glint::drop_glint_angle;
 use crate::rain::medium::MediumLight;
 use crate::rain::medium::phase::medium_phase_at;
 
-/// Light of all lamps at a place of a ray if nothing hid them, and the part of it that comes from one, which a number of [0, 1) draws; that
-/// lamp.
+/// Light of all lamps on spray if nothing hid them, and the part of it that comes from one of them to one place.
+#[derive(Clone, Copy, Debug, Default)]
 struct SprayLight {
     whole: Vec3,
+    /// Part of the random number that is left.
+    rest: f32,
     drawn: Vec3,
     lamp: u32,
+    /// Distance of that place.
+    at: f32,
 }
 
 impl MediumLight<'_> {
@@ -34,46 +39,52 @@ impl MediumLight<'_> {
         light.irradiance * PI * phase.truncate()
     }
 
-    fn spray_light_at(&self, place: Vec3, direction: Vec3, number: f32) -> SprayLight {
-        let mut sum = SprayLight { whole: Vec3::ZERO, drawn: Vec3::ZERO, lamp: 0 };
-        let mut rest = number;
+    /// Adds the light of all lamps at a place of a ray, of which a share counts.
+    fn spray_light_add(&self, sum: SprayLight, direction: Vec3, at: f32, share: f32) -> SprayLight {
+        let mut next = sum;
+        if share <= 0.0 {
+            return next;
+        }
+        let place = Vec3::from(self.medium.eye) + direction * at;
         for k in 0..self.lighting.light_count() {
-            let given = self.spray_light_lamp(&self.lighting.light(k), place, direction);
+            let given = self.spray_light_lamp(&self.lighting.light(k), place, direction) * share;
             let fraction = light_weight(given);
             if fraction > 0.0 {
-                sum.whole += given;
-                let chance = fraction / light_weight(sum.whole);
-                if rest < chance {
-                    rest /= chance;
-                    sum.drawn = given;
-                    sum.lamp = k;
+                next.whole += given;
+                let chance = fraction / light_weight(next.whole);
+                if next.rest < chance {
+                    next.rest /= chance;
+                    (next.drawn, next.lamp, next.at) = (given, k, at);
                 } else {
-                    rest = (rest - chance) / (1.0 - chance).max(1.0e-9);
+                    next.rest = (next.rest - chance) / (1.0 - chance).max(1.0e-9);
                 }
             }
         }
-        sum
+        next
     }
 
     /// Light on the spray before a pixel, and in front of it what was found of it.
     fn spray_light_pixel(&self, x: u32, y: u32, found: &mut [[f32; 4]; 2]) {
-        let [depth, distance] = [found[0][3], found[1][3]];
+        // Optical depth and share of the nearer place; places.
+        let [[depth, nearer], [near, far]] = found.map(|row| packing_unpack_half(row[3].to_bits()));
         if depth <= 0.0 || self.medium.lit == MEDIUM_DARK {
             return;
         }
         let direction = self.camera.camera_direction(x as f32 + 0.5, y as f32 + 0.5);
-        let place = Vec3::from(self.medium.eye) + direction * distance;
-        let number = rng_unit(path_lattice_words(self.camera.seed, x, y, SPRAY_LATTICE)[1]);
-        let sum = self.spray_light_at(place, direction, number);
+        let rest = rng_unit(path_lattice_words(self.camera.seed, x, y, SPRAY_LATTICE)[0]);
+        let mut sum = SprayLight { rest, ..SprayLight::default() };
+        sum = self.spray_light_add(sum, direction, near, nearer);
+        sum = self.spray_light_add(sum, direction, far, 1.0 - nearer);
         let fraction = light_weight(sum.drawn);
         let mut seen = Vec3::ZERO;
         if fraction > 0.0 {
+            let place = Vec3::from(self.medium.eye) + direction * sum.at;
             let light = self.lighting.light(sum.lamp).light_sample(place, SPRAY_LAMP_MIN);
             seen = self.lighting.visibility(place, light.direction, light.distance)
                 * sum.drawn
                 * (light_weight(sum.whole) / fraction);
         }
-        *found = [sum.whole.extend(depth), seen.extend(distance)].map(Into::into);
+        *found = [sum.whole.extend(found[0][3]), seen.extend(found[1][3])].map(Into::into);
     }
 
     /// Lights the spray before the pixels of a picture: rows as [`SprayView::found`](super::SprayView::found) gives them. The same bits for
