@@ -111,7 +111,7 @@ fn hosts() -> Vec<Host> {
         host!(LayersFrame as "LayersFrame" in &render::layers::LAYERS,
             fall, moved, row_part, row, count, strength, parallax, milk, stretch, distortion, unused, lamps),
         host!(SprayFrame as "SprayFrame" in &render::spray::SPRAY_FRAME,
-            levels, lean, extinction, height, eye, top, rise, unused),
+            levels, lean, extinction, height, eye, top, rise, ray_spacing, ray_column, ray_row, unused_a, unused_b),
         host!(EyeDrop as "EyeDrop" in &sim::field::EYE_DROP,
             offset, diameter, velocity, id, present, speed, id_low),
         host!(FieldClass as "FieldClass" in &sim::field::FIELD,

@@ -1,5 +1,6 @@
 //! Reproduced figures of papers, with our rain beside theirs.
 
+mod city;
 mod im_sung;
 mod persistence;
 
@@ -14,6 +15,7 @@ pub(crate) struct Figures {
 
 #[derive(Debug, Subcommand)]
 enum Which {
+    City(city::Options),
     ImSung(im_sung::Options),
     Persistence(persistence::Options),
 }
@@ -21,6 +23,7 @@ enum Which {
 /// Makes the figures of a name.
 pub(crate) fn run(figures: &Figures) -> Result<(), String> {
     match &figures.which {
+        Which::City(options) => city::run(options),
         Which::ImSung(options) => im_sung::run(options),
         Which::Persistence(options) => persistence::run(options),
     }

@@ -5,7 +5,7 @@ use super::drop_light::DROP_GLINT;
 use super::medium::{MEDIUM, MEDIUM_CONSTANTS, MEDIUM_PHASE};
 use super::path::PATH_LATTICE;
 use super::rain::{DROPS_FRAME, DROPS_MEDIUM};
-use super::scene::{DATA, SCENE, SCENE_CONSTANTS, SURFACE};
+use super::scene::{DATA, SCENE, SCENE_CONSTANTS, SPACING, SURFACE};
 use super::table::LIGHT;
 use crate::bvh::BVH;
 use crate::common::RNG;
@@ -91,6 +91,7 @@ pub static SPRAY_LIGHT: Module = Module {
         &PATH_LATTICE,
         &LIGHT,
         &SCENE,
+        &SPACING,
         &RNG,
     ],
 };
@@ -99,7 +100,7 @@ pub static SPRAY_LIGHT: Module = Module {
 pub static SPRAY_BLEND: Module = Module {
     path: "render/spray_blend.wgsl",
     wgsl: include_str!("../../wgsl/render/spray_blend.wgsl"),
-    uses: &[&SPRAY_CONSTANTS, &SCENE_CONSTANTS, &DROPS_FRAME, &DROPS_MEDIUM, &LIGHT],
+    uses: &[&SPRAY_CONSTANTS, &SPRAY_FRAME, &SCENE_CONSTANTS, &DROPS_FRAME, &DROPS_MEDIUM, &LIGHT, &SPACING],
 };
 
 /// A workgroup per cell of each square.

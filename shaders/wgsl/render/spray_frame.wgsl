@@ -16,7 +16,12 @@ struct SprayFrame {
     top: f32,
     // Unit direction against the mean fall.
     rise: vec3f,
-    unused: f32,
+    // Distance in pixels between those whose rays look for what hides lamps, and the column and row of the one in each cell.
+    ray_spacing: u32,
+    ray_column: u32,
+    ray_row: u32,
+    unused_a: u32,
+    unused_b: u32,
 }
 
 @group(0) @binding(10) var<uniform> spray_frame: SprayFrame;

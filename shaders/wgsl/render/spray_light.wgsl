@@ -1,6 +1,6 @@
 // Light of lamps and sun that spray scatters toward the eye, over the part of the light behind it that it takes out.
 // Law: single scattering at the two places that stand for the spray of a ray (spray.wgsl), with the phase function of a drop. Occlusion is
-// tested with one ray per pixel, to a lamp from a place that are drawn by the light that they would give; the mean over the pixels around it is
+// tested with one ray per pixel that looks (spacing.wgsl), to a lamp from a place that are drawn by the light that they would give; the mean over the pixels around it is
 // taken by spray_blend.wgsl.
 // Twin: downpour_render::rain::spray::light.
 
@@ -69,8 +69,12 @@ fn spray_light_pixel(x: u32, y: u32) {
     sum = spray_light_add(sum, direction, places.x, pair.y);
     sum = spray_light_add(sum, direction, places.y, 1.0 - pair.y);
     let fraction = light_weight(sum.drawn);
-    var seen = vec3f(0.0);
-    if fraction > 0.0 {
+    // Below 0: the pixels around it look.
+    var seen = vec3f(-1.0);
+    if spacing_looks(x, y) {
+        seen = vec3f(0.0);
+    }
+    if fraction > 0.0 && seen.x >= 0.0 {
         let place = medium_frame.eye + direction * sum.at;
         let light = light_sample(light_load(sum.lamp), place, SPRAY_LAMP_MIN);
         seen = scene_visibility(place, light.direction, light.distance) * sum.drawn * (light_weight(sum.whole) / fraction);
@@ -80,8 +84,13 @@ fn spray_light_pixel(x: u32, y: u32) {
 }
 
 @compute @workgroup_size(8, 8, 1)
-fn main_spray_light(@builtin(global_invocation_id) id: vec3u) {
-    if id.x < render_frame.camera.width && id.y < render_frame.camera.height {
-        spray_light_pixel(id.x, id.y);
+fn main_spray_light(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_index) invocation: u32,
+) {
+    let at = spacing_place(group.xy, groups.xy, invocation);
+    if at.x < render_frame.camera.width && at.y < render_frame.camera.height {
+        spray_light_pixel(at.x, at.y);
     }
 }

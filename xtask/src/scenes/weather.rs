@@ -24,6 +24,8 @@ const LIGHTNING: &str =
     "\n[lightning]\nper_minute = 20\nseed = 14\ndistance_m = [500, 1500]\nbrightness = 20\n";
 /// Water that runs off awnings, ledges and leaves.
 const DRIPS: &str = "\n[drips]\nenabled = true\n";
+/// Mist of a cloudburst over road and cars.
+const SPRAY: &str = "\n[spray]\nenabled = true\n";
 /// A sun at 11 degrees, below the edge of the clouds, along the street; 127.5 klx exp(-0.21 / sin h), tinted.
 const LOW_SUN: &str = "\n[sky]\nzenith_color = [900, 1000, 1180]\n\n[sun]\nazimuth_deg = 62\nelevation_deg = 24\n\
                        illuminance_lux = 60000\ncolor = [1, 0.84, 0.62]\n";
@@ -111,6 +113,7 @@ pub(super) fn make(street: &Street) -> Vec<WeatherFile> {
             &[
                 &rain(150),
                 DRIPS,
+                SPRAY,
                 STORM_SKY,
                 "\n[[wind]]\nuniform = { speed_m_s = 9, towards_deg = 80 }\n",
                 LIGHTNING,

@@ -271,7 +271,8 @@ impl RainPipeline {
                     phase: medium.phase(),
                     layer: &layer,
                 };
-                Some(self.spray()?.prepare(buffers, picture, plate, spray, of)?)
+                let rays = lights[0].lighting.ray_spacing();
+                Some(self.spray()?.prepare(buffers, picture, plate, (spray, rays), of)?)
             }
             _ => None,
         };

@@ -7,6 +7,7 @@ use downpour_shaders::render::spray::{
 
 use super::plate::PlateOnGpu;
 use crate::rain::spray::{SprayFrame, SprayMap};
+use crate::spacing::RaySpacing;
 
 /// Pipelines of spray.
 #[derive(Clone, Debug)]
@@ -38,6 +39,7 @@ pub(super) struct SprayPass {
     kernels: [ComputeKernel; 4],
     bindings: [wgpu::BindGroup; 4],
     groups: [u32; 3],
+    groups_of_light: [u32; 3],
     map: wgpu::Buffer,
     found: wgpu::Buffer,
 }
@@ -59,14 +61,14 @@ impl SprayPipeline {
         buffers: &impl BufferSource,
         [width, height]: [u32; 2],
         plate: &PlateOnGpu<'_>,
-        frame: &SprayFrame,
+        (frame, rays): (&SprayFrame, RaySpacing),
         of: SprayOf<'_>,
     ) -> Result<SprayPass, GpuError> {
         let storage = wgpu::BufferUsages::STORAGE;
         let map = buffers.buffer("heights under spray", u64::from(SprayMap::len()) * 4, storage)?;
         let pixels = u64::from(width) * u64::from(height);
         let found = buffers.buffer("spray", pixels * 32, storage)?;
-        let frame = buffers.uniform("spray frame", frame)?;
+        let frame = buffers.uniform("spray frame", &frame.with_rays(rays))?;
         let numbered = || (0u32..).zip(&plate.lighting.buffers);
         let picture = &plate.lighting.buffers[0];
         let bindings = [
@@ -85,6 +87,7 @@ impl SprayPipeline {
                     (3, of.layer),
                     (7, of.table),
                     (9, of.medium),
+                    (10, &frame),
                 ],
             )?,
         ];
@@ -92,6 +95,7 @@ impl SprayPipeline {
             kernels: [self.map.clone(), self.found.clone(), self.light.clone(), self.blend.clone()],
             bindings,
             groups: [width.div_ceil(8), height.div_ceil(8), 1],
+            groups_of_light: rays.workgroups([width, height]),
             map,
             found,
         })
@@ -101,7 +105,8 @@ impl SprayPipeline {
 impl SprayPass {
     /// The map of heights, what is found in it, its light, and its place behind the rain, in this order.
     pub(super) fn dispatches(&self) -> Vec<Dispatch<'_>> {
-        let groups = [[SPRAY_CELLS, SPRAY_CELLS, SPRAY_LEVELS], self.groups, self.groups, self.groups];
+        let groups =
+            [[SPRAY_CELLS, SPRAY_CELLS, SPRAY_LEVELS], self.groups, self.groups_of_light, self.groups];
         let all = self.kernels.iter().zip(&self.bindings).zip(groups);
         all.map(|((kernel, bindings), groups)| kernel.dispatch(bindings, groups)).collect()
     }

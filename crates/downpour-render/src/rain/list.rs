@@ -144,22 +144,23 @@ impl Rain {
         if lights.lighting.is_open() {
             return;
         }
-        let map = SprayMap::new(frame, lights.lighting);
-        let view = SprayView { frame, map: &map };
-        let mut found = view.found(&self.frame.camera, &self.medium, clean);
+        let frame = frame.with_rays(lights.lighting.ray_spacing());
+        let map = SprayMap::new(&frame, lights.lighting);
+        let mut found = SprayView { frame: &frame, map: &map }.found(&self.frame.camera, &self.medium, clean);
         self.medium_light(lights).light_spray(&mut found);
-        self.blend_spray(&found, (environment, table), layer);
+        self.blend_spray(&frame, &found, (environment, table), layer);
     }
 
     /// Puts spray that was found and lit before each pixel behind the rain of a picture.
     pub fn blend_spray(
         &self,
+        frame: &SprayFrame,
         found: &[[f32; 4]],
         (environment, table): (&EnvironmentMap, &StreakTable),
         layer: &mut [[f32; 4]],
     ) {
         let (drops, medium) = (&self.frame, &self.medium);
-        SprayBlend { found, drops, environment, table, medium }.behind(layer);
+        SprayBlend { frame, found, drops, environment, table, medium }.behind(layer);
     }
 
     /// For each drop that was given and is not hidden altogether by the scene, its place among those given, nearest first.

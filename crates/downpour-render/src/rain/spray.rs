@@ -23,6 +23,7 @@ use rayon::prelude::*;
 
 use super::medium::{MediumFrame, RainMedium};
 use crate::camera::Camera;
+use crate::spacing::RaySpacing;
 pub(super) use blend::SprayBlend;
 pub use map::SprayMap;
 
@@ -47,8 +48,16 @@ pub struct SprayFrame {
     pub top: f32,
     /// Unit direction against the mean fall.
     pub rise: [f32; 3],
+    /// Distance in pixels between those whose rays look for what hides lamps.
+    pub ray_spacing: u32,
+    /// Column of the one in each cell.
+    pub ray_column: u32,
+    /// Its row.
+    pub ray_row: u32,
     /// Unused.
-    pub unused: f32,
+    pub unused_a: u32,
+    /// Unused.
+    pub unused_b: u32,
 }
 
 impl SprayFrame {
@@ -77,8 +86,19 @@ impl SprayFrame {
             eye: eye.into(),
             top: eye.y + SPRAY_TOP,
             rise: rise.into(),
-            unused: 0.0,
+            ray_spacing: 1,
+            ray_column: 0,
+            ray_row: 0,
+            unused_a: 0,
+            unused_b: 0,
         })
+    }
+
+    /// The same with the pixels whose rays look for what hides lamps.
+    #[must_use]
+    pub fn with_rays(self, rays: RaySpacing) -> Self {
+        let [ray_column, ray_row] = rays.place();
+        Self { ray_spacing: rays.spacing(), ray_column, ray_row, ..self }
     }
 }
 

@@ -4,6 +4,7 @@ use downpour_drop::spray::Spray;
 use downpour_gpu::{Gpu, GpuError};
 use downpour_math::packing::packing_unpack_half;
 use downpour_render::gpu::RainPipeline;
+use downpour_render::plate::Lighting as _;
 use downpour_render::rain::spray::{SprayMap, SprayView, spray_between, spray_border};
 use downpour_render::rain::{DropMasks, RainOptions};
 use downpour_shaders::Kernel;
@@ -52,7 +53,7 @@ fn spray_case(gpu: &Gpu, placement: Placement, part: Part) -> Result<Run, GpuErr
     let mut layer = pass.layer()?;
     gpu.submit(&pass.spray())?;
     let (words, found) = pass.spray_found()?;
-    let spray = rain.spray.expect("spray");
+    let spray = rain.spray.expect("spray").with_rays(view.ray_spacing());
     // What is worked out from the device's own map and findings differs by nothing else.
     let map = SprayMap { words };
     let numbers =
@@ -106,7 +107,7 @@ fn spray_case(gpu: &Gpu, placement: Placement, part: Part) -> Result<Run, GpuErr
         }
         Part::Blend => {
             let table = rain.streak_table(&masks, capture, &both[1].light(&rain.streak_rows()));
-            rain.blend_spray(&found, (capture, &table), &mut layer);
+            rain.blend_spray(&spray, &found, (capture, &table), &mut layer);
             Ok(run(SIZE[0], &layer, &pass.layer()?))
         }
     }
@@ -183,6 +184,12 @@ pub(in crate::cases) fn kernels() -> Vec<KernelCase> {
         }),
         case("main_spray_light: shadows", &SPRAY_LIGHT_KERNEL, SEEN, |gpu| {
             spray_case(gpu, LEVEL, Part::Seen)
+        }),
+        case("main_spray_light: one pixel in 9 looks", &SPRAY_LIGHT_KERNEL, SEEN, |gpu| {
+            spray_case(gpu, Placement { spacing: 3, ..LEVEL }, Part::Seen)
+        }),
+        case("main_spray_blend: one pixel in 16 looks", &SPRAY_BLEND_KERNEL, BLENDED, |gpu| {
+            spray_case(gpu, Placement { spacing: 4, ..LEVEL }, Part::Blend)
         }),
         case("main_spray_blend: many lamps", &SPRAY_BLEND_KERNEL, BLENDED, |gpu| {
             spray_case(gpu, BESIDE, Part::Blend)

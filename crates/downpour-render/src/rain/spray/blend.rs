@@ -7,6 +7,7 @@ use downpour_shaders::render::spray::SPRAY_ALIKE;
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
+use super::SprayFrame;
 use crate::light::light_weight;
 use crate::rain::drops_frame::DropsView;
 use crate::rain::drops_medium::drops_medium;
@@ -17,6 +18,8 @@ use crate::spacing::window;
 /// Spray that was found and lit before the pixels of a picture.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SprayBlend<'a> {
+    /// The frame of the spray, with the pixels that look.
+    pub(crate) frame: &'a SprayFrame,
     /// Two rows for each pixel.
     pub(crate) found: &'a [[f32; 4]],
     /// The drops before it, and what they show.
@@ -38,28 +41,42 @@ impl SprayBlend<'_> {
         Vec2::new(depth, near * nearer + far * (1.0 - nearer))
     }
 
+    /// Of the pixels of a window around a pixel that look for what hides lamps: their light if nothing did, and what was seen of it. `alike`: of
+    /// those whose spray is as far away.
+    fn spray_blend_window(&self, x: u32, y: u32, alike: bool) -> [Vec3; 2] {
+        let [width, height] = self.drops.camera.size();
+        let distance = self.spray_blend_place(x, y).y;
+        let SprayFrame { ray_spacing: apart, ray_column, ray_row, .. } = *self.frame;
+        // Where fewer look, they are looked for farther away.
+        let reach = SKYLIGHT_RADIUS + 2 * (apart - 1);
+        let mut sum = [Vec3::ZERO; 2];
+        for row in window(y, apart, reach, ray_row, height) {
+            for column in window(x, apart, reach, ray_column, width) {
+                let place = self.spray_blend_place(column, row);
+                let difference =
+                    (distance - place.y).abs() / (SPRAY_ALIKE * distance.max(place.y).max(1.0e-6));
+                let weight = if alike { (1.0 - difference).max(0.0) } else { 1.0 };
+                let [other, by_ray] = self.rows(column, row);
+                if weight > 0.0 && place.x > 0.0 && by_ray.x >= 0.0 {
+                    sum[0] += other.truncate() * weight;
+                    sum[1] += by_ray.truncate() * weight;
+                }
+            }
+        }
+        sum
+    }
+
     /// Light of lamps on the spray before a pixel, as far as it is seen.
     fn spray_blend_light(&self, x: u32, y: u32) -> Vec3 {
-        let [width, height] = self.drops.camera.size();
         let whole = self.rows(x, y)[0].truncate();
         if light_weight(whole) <= 0.0 {
             return Vec3::ZERO;
         }
-        let distance = self.spray_blend_place(x, y).y;
-        let (mut all, mut seen) = (Vec3::ZERO, Vec3::ZERO);
-        for row in window(y, 1, SKYLIGHT_RADIUS, 0, height) {
-            for column in window(x, 1, SKYLIGHT_RADIUS, 0, width) {
-                let place = self.spray_blend_place(column, row);
-                let apart = (distance - place.y).abs() / (SPRAY_ALIKE * distance.max(place.y).max(1.0e-6));
-                let weight = (1.0 - apart).max(0.0);
-                if weight > 0.0 && place.x > 0.0 {
-                    let [other, by_ray] = self.rows(column, row);
-                    all += other.truncate() * weight;
-                    seen += by_ray.truncate() * weight;
-                }
-            }
+        let mut sum = self.spray_blend_window(x, y, true);
+        if light_weight(sum[0]) <= 0.0 {
+            sum = self.spray_blend_window(x, y, false);
         }
-        whole * seen / all.max(Vec3::splat(1.0e-30))
+        whole * sum[1] / sum[0].max(Vec3::splat(1.0e-30))
     }
 
     /// The rain of a pixel with the spray behind it.

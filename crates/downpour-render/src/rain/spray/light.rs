@@ -76,8 +76,10 @@ impl MediumLight<'_> {
         sum = self.spray_light_add(sum, direction, near, nearer);
         sum = self.spray_light_add(sum, direction, far, 1.0 - nearer);
         let fraction = light_weight(sum.drawn);
-        let mut seen = Vec3::ZERO;
-        if fraction > 0.0 {
+        // Below 0: the pixels around it look.
+        let looks = self.lighting.ray_spacing().spacing_looks(x, y);
+        let mut seen = if looks { Vec3::ZERO } else { Vec3::NEG_ONE };
+        if looks && fraction > 0.0 {
             let place = Vec3::from(self.medium.eye) + direction * sum.at;
             let light = self.lighting.light(sum.lamp).light_sample(place, SPRAY_LAMP_MIN);
             seen = self.lighting.visibility(place, light.direction, light.distance)

@@ -1,0 +1,172 @@
+//! The effects: which weather file, and which of its keys.
+
+/// An effect off and on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Effect {
+    pub(super) name: &'static str,
+    pub(super) title: &'static str,
+    /// A weather file of the street.
+    pub(super) base: &'static str,
+    /// Time of the picture, s.
+    pub(super) time_s: &'static str,
+    /// Tables of it that are left out in both.
+    pub(super) without: &'static [&'static str],
+    /// Changes of both.
+    pub(super) both: &'static str,
+    /// Changes without the effect, and with it.
+    pub(super) off: &'static str,
+    pub(super) on: &'static str,
+}
+
+/// A view of cars along the street.
+const CARS: &str = "[camera]\nposition_m = [-0.4, 1.35, -7.5]\nlook_at_m = [2.5, 0.9, -16]\nfov_deg = 32\n";
+
+/// A view of a hollow of the road.
+const HOLLOW_VIEW: &str =
+    "[camera]\nposition_m = [0.9, 0.9, -15.6]\nlook_at_m = [0.95, 0.02, -18.2]\nfov_deg = 40\n";
+
+/// All of them.
+pub(super) const EFFECTS: [Effect; 14] = [
+    Effect {
+        name: "rain",
+        title: "Drops, streaks and unresolved rain",
+        base: "night.toml",
+        time_s: "1",
+        without: &[],
+        both: "",
+        off: "[look]\nvisibility = 0\n",
+        on: "[look]\nvisibility = 1\n",
+    },
+    Effect {
+        name: "lamps",
+        title: "Light of lamps on the rain",
+        base: "night.toml",
+        time_s: "1",
+        without: &[],
+        both: "[camera]\nlook_at_m = [-2.5, 3.3, -20]\nfov_deg = 24\n",
+        off: "[rain]\ndrop_light = \"none\"\n",
+        on: "[rain]\ndrop_light = \"traced\"\n",
+    },
+    Effect {
+        name: "layers",
+        title: "Image-space rainfall (section 3.1)",
+        base: "night.toml",
+        time_s: "1",
+        without: &[],
+        both: "",
+        off: "[rain]\nrate_mm_h = 0\n",
+        on: "[rain]\nlayers = \"tatarchuk-2006\"\n",
+    },
+    Effect {
+        name: "wetness",
+        title: "Wet materials",
+        base: "day.toml",
+        time_s: "1",
+        without: &[],
+        both: "",
+        off: "[wetness]\nenabled = false\n",
+        on: "[wetness]\nenabled = true\n",
+    },
+    Effect {
+        name: "puddles",
+        title: "Puddles",
+        base: "day.toml",
+        time_s: "1",
+        without: &[],
+        both: HOLLOW_VIEW,
+        off: "",
+        on: "[[puddle]]\nposition_m = [0.96, 0.05, -18.38]\nsize_m = [1.73, 3.60]\nfill = 1\nrelief_mm = 1.2\n",
+    },
+    Effect {
+        name: "ripples",
+        title: "Ripples of the drops that fall",
+        base: "day.toml",
+        time_s: "1",
+        without: &[],
+        both: HOLLOW_VIEW,
+        off: "[[puddle]]\nposition_m = [0.96, 0.05, -18.38]\nsize_m = [1.73, 3.60]\nfill = 1\nrelief_mm = 1.2\nripple_influence = 0\n",
+        on: "[[puddle]]\nposition_m = [0.96, 0.05, -18.38]\nsize_m = [1.73, 3.60]\nfill = 1\nrelief_mm = 1.2\n",
+    },
+    Effect {
+        name: "splashes",
+        title: "Splashes",
+        base: "storm.toml",
+        time_s: "1",
+        without: &["lightning", "wind"],
+        both: "[camera]\nposition_m = [-0.6, 0.5, -8]\nlook_at_m = [0.3, 0.02, -10.5]\nfov_deg = 34\nshutter_s = 0.004\n",
+        off: "[splashes]\nenabled = false\n",
+        on: "[splashes]\nenabled = true\n",
+    },
+    Effect {
+        name: "drips",
+        title: "Drips off an awning",
+        base: "storm.toml",
+        time_s: "1",
+        without: &["lightning", "wind"],
+        both: "[camera]\nposition_m = [-1.8, 1.6, -5.5]\nlook_at_m = [-4.6, 2.0, -9.5]\nfov_deg = 42\nshutter_s = 0.004\n",
+        off: "[drips]\nenabled = false\n",
+        on: "[drips]\nenabled = true\n",
+    },
+    Effect {
+        name: "spray",
+        title: "Spray: misty halos of objects (section 3.4)",
+        base: "storm.toml",
+        time_s: "1",
+        without: &["lightning"],
+        both: CARS,
+        off: "[spray]\nenabled = false\n",
+        on: "[spray]\nenabled = true\n",
+    },
+    Effect {
+        name: "lightning",
+        title: "Lightning",
+        base: "storm.toml",
+        time_s: "0.5333",
+        without: &["lightning"],
+        both: "",
+        off: "",
+        on: "[lightning]\nper_minute = 20\nseed = 14\ndistance_m = [500, 1500]\nbrightness = 20\n",
+    },
+    Effect {
+        name: "fog",
+        title: "Fog",
+        base: "night.toml",
+        time_s: "1",
+        without: &[],
+        both: "",
+        off: "",
+        on: "[fog]\nvisibility_m = 300\n",
+    },
+    Effect {
+        name: "glow",
+        title: "Glow around lights",
+        base: "night.toml",
+        time_s: "1",
+        without: &[],
+        both: "",
+        off: "[glow]\nglare = 0\ndiffraction = false\n",
+        on: "[glow]\nglare = 0.05\n",
+    },
+    Effect {
+        name: "glass",
+        title: "Droplets on glass",
+        base: "windshield.toml",
+        time_s: "0.7",
+        without: &["glass"],
+        both: "",
+        off: "",
+        on: "[glass]\ndistance_m = 0.34\ntilt_deg = 60\nsize_m = [0.5, 0.37]\ncell_mm = 0.85\nspeed_m_s = 8\nfocus = \"glass\"\naperture_mm = 6\n\
+             before_s = 60.45\n",
+    },
+    Effect {
+        name: "wipers",
+        title: "Wipers",
+        base: "windshield.toml",
+        time_s: "0.7",
+        without: &["glass"],
+        both: "[glass]\ndistance_m = 0.34\ntilt_deg = 60\nsize_m = [0.5, 0.37]\ncell_mm = 0.85\nspeed_m_s = 8\nfocus = \"glass\"\naperture_mm = 6\n\
+               before_s = 60.45\n",
+        off: "",
+        on: "[[glass.wiper]]\npivot_m = [0.25, 0.41]\nlength_m = 0.36\nfrom_deg = 10\nto_deg = 170\nperiod_s = 3\n",
+    },
+];
