@@ -27,6 +27,7 @@ fn the_figures_of_papers_are_weather_files() {
         "rousseau_2008_fig_06",
         "rousseau_2008_fig_07",
         "tatarchuk_2006_fig_02",
+        "tatarchuk_2006_fig_06",
         "tatarchuk_2006_fig_07",
         "im_sung_2022_fig_06",
         "im_sung_2022_fig_08",
