@@ -7,6 +7,7 @@ mod host;
 mod kept_light;
 mod layers;
 mod medium;
+mod once;
 mod plate;
 mod project;
 mod rain;

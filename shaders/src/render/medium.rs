@@ -17,10 +17,17 @@ pub const MODULES: &[&Module] = &[
     &MEDIUM_PHASE,
     &MEDIUM_LIGHT,
     &MEDIUM_FILTER,
+    &MEDIUM_SMOOTH,
 ];
 
 /// Every kernel of this file.
-pub const KERNELS: &[&Kernel] = &[&MEDIUM_OPEN_KERNEL, &MEDIUM_LIGHT_KERNEL, &MEDIUM_FILTER_KERNEL];
+pub const KERNELS: &[&Kernel] = &[
+    &MEDIUM_OPEN_KERNEL,
+    &MEDIUM_LIGHT_KERNEL,
+    &MEDIUM_FILTER_KERNEL,
+    &MEDIUM_SMOOTH_PARTS_KERNEL,
+    &MEDIUM_SMOOTH_KERNEL,
+];
 
 shared_constants! {
     /// Numbers of the unresolved rain.
@@ -149,6 +156,13 @@ pub static MEDIUM_FILTER: Module = Module {
     uses: &[&MEDIUM_CONSTANTS, &MEDIUM, &MEDIUM_SPREAD, &LIGHT, &SCENE_CONSTANTS, &SPACING],
 };
 
+/// Means of means, in fog. Twin: `downpour_render::rain::medium::smooth`.
+pub static MEDIUM_SMOOTH: Module = Module {
+    path: "render/medium_smooth.wgsl",
+    wgsl: include_str!("../../wgsl/render/medium_smooth.wgsl"),
+    uses: &[&MEDIUM_FILTER, &MEDIUM_SPREAD, &LIGHT, &SCENE_CONSTANTS, &DATA],
+};
+
 /// One invocation per cell and slice of the grid.
 pub static MEDIUM_OPEN_KERNEL: Kernel =
     Kernel { entry: "main_medium_open", module: &MEDIUM_OPEN, workgroup: [MEDIUM_SLICES, MEDIUM_CELLS, 1] };
@@ -160,3 +174,11 @@ pub static MEDIUM_LIGHT_KERNEL: Kernel =
 /// One invocation per pixel.
 pub static MEDIUM_FILTER_KERNEL: Kernel =
     Kernel { entry: "main_medium_filter", module: &MEDIUM_FILTER, workgroup: [8, 8, 1] };
+
+/// One invocation per pixel.
+pub static MEDIUM_SMOOTH_PARTS_KERNEL: Kernel =
+    Kernel { entry: "main_medium_smooth_parts", module: &MEDIUM_SMOOTH, workgroup: [8, 8, 1] };
+
+/// One invocation per pixel.
+pub static MEDIUM_SMOOTH_KERNEL: Kernel =
+    Kernel { entry: "main_medium_smooth", module: &MEDIUM_SMOOTH, workgroup: [8, 8, 1] };

@@ -67,18 +67,28 @@ fn medium_filter_seen(x: u32, y: u32, all: bool) -> MediumRows {
     return sum;
 }
 
-// The light before a pixel, and two halves.
-fn medium_filter_pixel(x: u32, y: u32) -> vec4f {
-    let own = medium_filter_own(x, y);
-    let packed = bitcast<f32>(pack2x16float(vec2f(min(own.seen.w, 6.0e4), min(own.whole.w, 6.0e4))));
-    if light_weight(own.whole.rgb) <= 0.0 {
-        return vec4f(vec3f(0.0), packed);
-    }
+// The part of the light before a pixel that the pixels around it have seen.
+fn medium_filter_part(x: u32, y: u32) -> vec3f {
     var sum = medium_filter_seen(x, y, false);
     if sum.whole.w <= 0.0 {
         sum = medium_filter_seen(x, y, true);
     }
-    return vec4f(own.whole.rgb * sum.seen.rgb / max(sum.whole.rgb, vec3f(1.0e-30)), packed);
+    return sum.seen.rgb / max(sum.whole.rgb, vec3f(1.0e-30));
+}
+
+// Mean distance and optical depth of what was found before a pixel, as halves.
+fn medium_filter_packed(own: MediumRows) -> f32 {
+    return bitcast<f32>(pack2x16float(vec2f(min(own.seen.w, 6.0e4), min(own.whole.w, 6.0e4))));
+}
+
+// The light before a pixel, and two halves.
+fn medium_filter_pixel(x: u32, y: u32) -> vec4f {
+    let own = medium_filter_own(x, y);
+    let packed = medium_filter_packed(own);
+    if light_weight(own.whole.rgb) <= 0.0 {
+        return vec4f(vec3f(0.0), packed);
+    }
+    return vec4f(own.whole.rgb * medium_filter_part(x, y), packed);
 }
 
 @compute @workgroup_size(8, 8, 1)

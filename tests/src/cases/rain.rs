@@ -29,7 +29,8 @@ use downpour_render::rain::{
 };
 use downpour_shaders::render::layers::{LAYERS, LAYERS_KERNEL};
 use downpour_shaders::render::medium::{
-    MEDIUM, MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL, MEDIUM_SPREAD, MEDIUM_STREAKS,
+    MEDIUM, MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL, MEDIUM_SMOOTH_KERNEL,
+    MEDIUM_SMOOTH_PARTS_KERNEL, MEDIUM_SPREAD, MEDIUM_STREAKS,
 };
 use downpour_shaders::render::rain::{
     COMPOSE, COMPOSE_KERNEL, DROPS_KERNEL, STREAK, STREAK_CELL, STREAK_LIGHT_KERNEL, STREAK_RAYS,
@@ -756,6 +757,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         run,
     };
     let filter = |name, run| KernelCase { tol: FILTERED, ..medium(name, &MEDIUM_FILTER_KERNEL, run) };
+    let smooth = |name, kernel, run| KernelCase { tol: FILTERED, ..medium(name, kernel, run) };
     let profiles = |name, run| KernelCase {
         name,
         kernel: &STREAK_LIGHT_KERNEL,
@@ -816,7 +818,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             let placement = Placement { spacing: 3, ..INSIDE };
             rain_case(gpu, placement, RefractionForm::Direction, Exposure::default(), Part::Medium)
         }),
-        filter("main_medium_filter: many lamps in fog, one pixel in 9 looks", |gpu| {
+        smooth("main_medium_smooth: many lamps in fog, one pixel in 9 looks", &MEDIUM_SMOOTH_KERNEL, |gpu| {
             let placement = Placement { spacing: 3, ..INSIDE };
             rain_case(gpu, placement, RefractionForm::Direction, Exposure::default(), Part::Filter)
         }),
@@ -824,8 +826,11 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             let placement = Placement { spacing: 4, ..LEVEL };
             rain_case(gpu, placement, RefractionForm::Direction, Exposure::default(), Part::Filter)
         }),
-        filter("main_medium_filter: many lamps in fog", |gpu| {
+        smooth("main_medium_smooth_parts: many lamps in fog", &MEDIUM_SMOOTH_PARTS_KERNEL, |gpu| {
             rain_case(gpu, INSIDE, RefractionForm::Direction, Exposure::default(), Part::Filter)
+        }),
+        filter("main_medium_filter: many lamps", |gpu| {
+            rain_case(gpu, BESIDE, RefractionForm::Direction, Exposure::default(), Part::Filter)
         }),
         KernelCase {
             tol: SEEN,

@@ -1,11 +1,15 @@
 //! Unresolved rain on a GPU: what [`MediumLight::layer`] makes on the CPU.
 
+use std::sync::{Arc, OnceLock};
+
 use bytemuck::Zeroable;
 use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu, workgroups};
 use downpour_shaders::render::medium::{
-    MEDIUM_CELLS, MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL,
+    MEDIUM_CELLS, MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL, MEDIUM_SMOOTH_KERNEL,
+    MEDIUM_SMOOTH_PARTS_KERNEL,
 };
 
+use super::once::once;
 use super::plate::PlateOnGpu;
 use crate::rain::medium::{MediumFrame, MediumLight};
 use crate::spacing::RaySpacing;
@@ -17,6 +21,8 @@ pub struct MediumPipeline {
     open: ComputeKernel,
     light: ComputeKernel,
     filter: ComputeKernel,
+    /// Of a picture with fog: made for the first one.
+    smooth: Arc<OnceLock<[ComputeKernel; 2]>>,
 }
 
 /// The unresolved rain of a picture, ready to be worked out.
@@ -25,7 +31,9 @@ pub struct MediumPass<'a> {
     pipeline: &'a MediumPipeline,
     open: (wgpu::BindGroup, [u32; 3]),
     light: (wgpu::BindGroup, [u32; 3]),
-    filter: (wgpu::BindGroup, [u32; 3]),
+    /// What takes means, in this order.
+    filters: Vec<(ComputeKernel, wgpu::BindGroup)>,
+    pixels: [u32; 3],
     frame: wgpu::Buffer,
     phase: wgpu::Buffer,
     found: wgpu::Buffer,
@@ -76,6 +84,7 @@ impl MediumPipeline {
             open: kernel(&MEDIUM_OPEN_KERNEL)?,
             light: kernel(&MEDIUM_LIGHT_KERNEL)?,
             filter: kernel(&MEDIUM_FILTER_KERNEL)?,
+            smooth: Arc::default(),
         })
     }
 
@@ -101,15 +110,29 @@ impl MediumPipeline {
         let open = self.open.bind_at(buffers, numbered().chain([(6, clean), (8, &found), (9, &frame)]))?;
         let of_light = [(6, clean), (7, &phase), (8, &found), (9, &frame)];
         let light = self.light.bind_at(buffers, numbered().chain(of_light))?;
-        let of_filter = [(0, &plate.lighting.buffers[0]), (1, &found), (2, clean), (3, layer), (9, &frame)];
-        let filter = self.filter.bind_at(buffers, of_filter)?;
+        let of_filter = [(0, &plate.lighting.buffers[0]), (1, &found), (2, clean), (9, &frame)];
+        let bound = |kernel: &ComputeKernel, more: &[(u32, &wgpu::Buffer)]| {
+            let bindings = kernel.bind_at(buffers, of_filter.into_iter().chain(more.iter().copied()))?;
+            Ok::<_, GpuError>((kernel.clone(), bindings))
+        };
+        let filters = if medium.medium.fog[0] > 0.0 {
+            let parts = buffers.buffer("seen light in fog", pixels * 16, wgpu::BufferUsages::STORAGE)?;
+            let [first, then] = once(&self.smooth, || {
+                let kernel = |kernel| ComputeKernel::new(&self.gpu, kernel, &[]);
+                Ok([kernel(&MEDIUM_SMOOTH_PARTS_KERNEL)?, kernel(&MEDIUM_SMOOTH_KERNEL)?])
+            })?;
+            vec![bound(first, &[(4, &parts)])?, bound(then, &[(3, layer), (4, &parts)])?]
+        } else {
+            vec![bound(&self.filter, &[(3, layer)])?]
+        };
         let cells = medium.medium.columns * medium.medium.rows;
         let rays = medium.lighting.ray_spacing();
         Ok(MediumPass {
             pipeline: self,
             open: (open, workgroups(cells.div_ceil(MEDIUM_CELLS))),
             light: (light, rays.workgroups([width, height])),
-            filter: (filter, [width.div_ceil(8), height.div_ceil(8), 1]),
+            filters,
+            pixels: [width.div_ceil(8), height.div_ceil(8), 1],
             frame,
             phase,
             of: MediumOf { medium: medium.medium, rays, phase: medium.phase.clone(), found: found.clone() },
@@ -126,12 +149,12 @@ impl MediumPass<'_> {
         self.pipeline.open.dispatch(&self.open.0, self.open.1)
     }
 
-    /// The dispatches after that, in this order: the light, unless it is there already, and its filter.
+    /// The dispatches after that, in this order: the light, unless it is there already, and its means.
     #[must_use]
     pub fn dispatches(&self) -> Vec<Dispatch<'_>> {
         let light = self.pipeline.light.dispatch(&self.light.0, self.light.1);
-        let filter = self.pipeline.filter.dispatch(&self.filter.0, self.filter.1);
-        if self.is_known { vec![filter] } else { vec![light, filter] }
+        let means = self.filters.iter().map(|(kernel, bindings)| kernel.dispatch(bindings, self.pixels));
+        (!self.is_known).then_some(light).into_iter().chain(means).collect()
     }
 
     /// Takes the light that the last picture has found, if it is the same; its plate and lamps are.

@@ -14,6 +14,7 @@ use super::drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
 use super::kept_light::KeptLight;
 use super::layers::{LayersPass, LayersPipeline};
 use super::medium::{MediumPass, MediumPipeline};
+use super::once::once;
 use super::plate::PlateOnGpu;
 use super::project::{FallingOnGpu, JobGroups, ListOnGpu, ProjectPass, ProjectPipeline};
 use super::spray::{SprayOf, SprayPass, SprayPipeline};
@@ -305,15 +306,6 @@ impl RainPipeline {
             classes: rain.profiles.classes.clone(),
         })
     }
-}
-
-/// What is made when it is first asked for.
-fn once<T>(cell: &OnceLock<T>, make: impl FnOnce() -> Result<T, GpuError>) -> Result<&T, GpuError> {
-    if let Some(known) = cell.get() {
-        return Ok(known);
-    }
-    let made = make()?;
-    Ok(cell.get_or_init(|| made))
 }
 
 /// Brings the drops of a picture to the device.

@@ -18,6 +18,7 @@ mod frame;
 mod light;
 mod open;
 pub(super) mod phase;
+mod smooth;
 pub mod spread;
 pub mod streaks;
 

@@ -12,9 +12,9 @@ use crate::spacing::window;
 
 /// What was found before a pixel, or sums of it.
 #[derive(Clone, Copy, Debug, Default)]
-struct Rows {
+pub(super) struct Rows {
     /// Light of lamps if nothing hid them, below 0 where others look for it; optical depth, or in a sum the weight.
-    whole: Vec4,
+    pub(super) whole: Vec4,
     /// Light of lamps that one ray has seen, and its mean distance.
     seen: Vec4,
 }
@@ -35,12 +35,12 @@ impl Filter<'_> {
     }
 
     /// Weight of a neighbor.
-    fn alike(&self, index: usize, other: usize) -> f32 {
+    pub(super) fn alike(&self, index: usize, other: usize) -> f32 {
         medium_spread_alike(self.clean[index][3], self.clean[other][3])
     }
 
     /// What was found before a pixel, or by the pixels around it that have looked for it.
-    fn medium_filter_own(&self, x: u32, y: u32) -> Rows {
+    pub(super) fn medium_filter_own(&self, x: u32, y: u32) -> Rows {
         let index = (y * self.light.camera.width + x) as usize;
         let own = self.medium_filter_rows(index);
         if own.whole.x >= 0.0 {
@@ -84,19 +84,28 @@ impl Filter<'_> {
         sum
     }
 
-    /// The light before a pixel, and two halves: mean distance and optical depth.
-    pub(super) fn medium_filter_pixel(&self, x: u32, y: u32) -> Vec4 {
-        let own = self.medium_filter_own(x, y);
-        let packed = f32::from_bits(packing_pack_half([own.seen.w.min(6.0e4), own.whole.w.min(6.0e4)]));
-        let light = own.whole.truncate();
-        if light_weight(light) <= 0.0 {
-            return Vec3::ZERO.extend(packed);
-        }
+    /// The part of the light before a pixel that the pixels around it have seen.
+    pub(super) fn medium_filter_part(&self, x: u32, y: u32) -> Vec3 {
         let mut sum = self.medium_filter_seen(x, y, false);
         if sum.whole.w <= 0.0 {
             sum = self.medium_filter_seen(x, y, true);
         }
-        let whole = sum.whole.truncate().max(Vec3::splat(1.0e-30));
-        (light * sum.seen.truncate() / whole).extend(packed)
+        sum.seen.truncate() / sum.whole.truncate().max(Vec3::splat(1.0e-30))
     }
+
+    /// The light before a pixel, and two halves: mean distance and optical depth.
+    pub(super) fn medium_filter_pixel(&self, x: u32, y: u32) -> Vec4 {
+        let own = self.medium_filter_own(x, y);
+        let light = own.whole.truncate();
+        let packed = medium_filter_packed(&own);
+        if light_weight(light) <= 0.0 {
+            return Vec3::ZERO.extend(packed);
+        }
+        (light * self.medium_filter_part(x, y)).extend(packed)
+    }
+}
+
+/// Mean distance and optical depth of what was found before a pixel, as halves.
+pub(super) fn medium_filter_packed(own: &Rows) -> f32 {
+    f32::from_bits(packing_pack_half([own.seen.w.min(6.0e4), own.whole.w.min(6.0e4)]))
 }

@@ -17,6 +17,7 @@ use super::filter::Filter;
 use super::fog::medium_fog_depth;
 use super::frame::{medium_both, medium_node, medium_roots};
 use super::phase::{medium_phase_at, medium_phase_within, phase_table};
+use super::smooth::Smooth;
 use crate::camera::Camera;
 use crate::light::{Light, light_weight};
 use crate::path_lattice::path_lattice_words;
@@ -93,9 +94,14 @@ impl<'a> MediumLight<'a> {
     pub fn filtered(&self, clean: &[[f32; 4]], found: &[[f32; 4]]) -> Vec<[f32; 4]> {
         let [width, height] = self.camera.size();
         let filter = Filter { light: self, clean, found };
+        let smooth = (self.medium.fog[0] > 0.0).then(|| Smooth::new(&filter));
+        let pixel = |x, y| match &smooth {
+            Some(smooth) => smooth.medium_smooth_pixel(x, y),
+            None => filter.medium_filter_pixel(x, y),
+        };
         (0..height)
             .into_par_iter()
-            .flat_map_iter(|y| (0..width).map(move |x| filter.medium_filter_pixel(x, y).to_array()))
+            .flat_map_iter(|y| (0..width).map(move |x| pixel(x, y).to_array()))
             .collect()
     }
 
