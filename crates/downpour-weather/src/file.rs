@@ -102,7 +102,8 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         let allowed = "false, or a rate without keys";
         return Err(positions.bad("drips.enabled", "drips of a rain whose rate changes", allowed));
     }
-    let (look, look_keys) = tables.look.checked(&positions)?;
+    let spray = Spray::checked(&tables.spray, &positions)?;
+    let (look, look_keys) = tables.look.checked(&spray, &positions)?;
     let streaks = tables.streaks.checked(rain.drop_light, &positions)?;
     let drop_model = tables.rain.drop_model(&streaks, &positions)?;
     let default = Weather::default();
@@ -115,7 +116,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         name: String::new(),
         wetness: Wetness::checked(&tables.wetness, &rain, &positions)?,
         splashes: Splashes::checked(&tables.splashes, &positions)?,
-        spray: Spray::checked(&tables.spray, &positions)?,
+        spray,
         drips: Drips::checked(&tables.drips, &tables.drip),
         lightning: Lightning::checked(&tables.lightning, &tables.flash, rain.seed, &positions)?,
         glass: tables.glass.map(|glass| glass.checked(&heaviest, is_still, &positions)).transpose()?,

@@ -7,6 +7,7 @@ use serde::Deserialize;
 use super::MAX_EXPOSURE_S;
 use super::fault::Positions;
 use super::quantity::{StreakLength, Visibility};
+use super::spray::Spray;
 use super::wind::keys::NumberKeys;
 
 /// Artistic multipliers of the rain in a picture: 1 is what physics gives. The rain that falls, wets and splashes is the same.
@@ -82,14 +83,22 @@ pub(super) struct LookTable {
 }
 
 impl LookTable {
-    /// The multipliers of time 0, and over time.
-    pub(super) fn checked(&self, positions: &Positions<'_>) -> Result<(Look, LookKeys), SceneError> {
+    /// The multipliers of time 0, and over time. That of spray is rejected where there is none.
+    pub(super) fn checked(
+        &self,
+        spray: &Spray,
+        positions: &Positions<'_>,
+    ) -> Result<(Look, LookKeys), SceneError> {
+        if self.spray.is_some() && !spray.is_enabled {
+            let allowed = "beside spray.enabled = true";
+            return Err(positions.bad("look.spray", "of spray that is not enabled", allowed));
+        }
         let (visibility, length) = (self.visibility.as_ref(), self.streak_length.as_ref());
-        let spray = self.spray.as_ref();
+        let density = self.spray.as_ref();
         let keys = LookKeys {
             visibility: visibility.map(|keys| keys.keyed("look.visibility", positions)).transpose()?,
             streak_length: length.map(|keys| keys.keyed("look.streak_length", positions)).transpose()?,
-            spray: spray.map(|keys| keys.keyed("look.spray", positions)).transpose()?,
+            spray: density.map(|keys| keys.keyed("look.spray", positions)).transpose()?,
         };
         Ok((Look::default().at(&keys, 0.0), keys))
     }

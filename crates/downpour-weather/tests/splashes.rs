@@ -37,6 +37,8 @@ fn there_is_spray_where_it_is_asked_for() {
     says("[spray]\nenabled = true\ndroplet_mm = nan", "spray.droplet_mm");
     says("[spray]\nenabled = true\nheigth_m = 0.1", "perhaps height_m");
     says("[look]\nspray = 21", "look.spray");
+    says("[look]\nspray = 2", "look.spray: of spray that is not enabled");
+    says("[spray]\nenabled = true\n[look]\nspray = 21", "0 to 20");
 }
 
 #[test]

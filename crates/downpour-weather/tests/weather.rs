@@ -89,6 +89,9 @@ width = 2
 filter = "kawase"
 diffraction = false
 
+[spray]
+enabled = true
+
 [look]
 visibility = 3
 spray = 4
