@@ -3,9 +3,10 @@
 use downpour_drop::spray::Spray;
 use downpour_gpu::{Gpu, GpuError};
 use downpour_math::packing::packing_unpack_half;
+use downpour_math::rng::rng_unit;
 use downpour_render::gpu::RainPipeline;
 use downpour_render::plate::Lighting as _;
-use downpour_render::rain::spray::{SprayMap, SprayView, spray_between, spray_border};
+use downpour_render::rain::spray::{SprayMap, SprayView, spray_between, spray_border, spray_places};
 use downpour_render::rain::{DropMasks, RainOptions};
 use downpour_shaders::Kernel;
 use downpour_shaders::render::spray::{
@@ -14,8 +15,10 @@ use downpour_shaders::render::spray::{
 use downpour_trace::gpu::ScenePipeline;
 use downpour_trace::scene::SceneView;
 
+use glam::Vec4;
+
 use super::{ABOVE, BESIDE, INSIDE, LEVEL, Placement, Prepared, SEEN, SIZE, run};
-use crate::Domain::Uniform;
+use crate::Domain::{Made, Uniform};
 use crate::function::Run;
 use crate::kept::kept;
 use crate::words::IntoWords as _;
@@ -113,6 +116,21 @@ fn spray_case(gpu: &Gpu, placement: Placement, part: Part) -> Result<Run, GpuErr
     }
 }
 
+/// An optical depth, the first and the last of some distances, and moments of what is at three of them: as far apart as they are, near one
+/// another, at one place, or nowhere.
+fn places(random: [u32; 4]) -> Vec<u32> {
+    let [first, at, apart, weight] = random.map(rng_unit);
+    let (first, last) = (0.5 + 20.0 * first, 1.0 + 30.0 * apart);
+    let scale = [1.0, 1.0, 1.0, 2.0e-4][random[0] as usize % 4];
+    let weights =
+        [0.2 + weight, 0.2 + 1.0 - weight, 0.3].map(|weight| if random[1] % 16 == 0 { 0.0 } else { weight });
+    let parts = [0.0, last * scale, last * scale * (0.2 + 0.6 * at)].into_iter().zip(weights);
+    let moments =
+        parts.fold(Vec4::ZERO, |sum, (x, weight)| sum + weight * Vec4::new(1.0, x, x * x, x * x * x));
+    let words = [weights[0], first, first + last].into_iter().chain(moments.to_array());
+    words.map(f32::to_bits).collect()
+}
+
 /// The cases.
 pub(in crate::cases) fn functions() -> Vec<FunctionCase> {
     vec![
@@ -122,6 +140,29 @@ pub(in crate::cases) fn functions() -> Vec<FunctionCase> {
             &[Uniform(-3.0, 9.0), Uniform(-3.0, 9.0)],
             Tol::relative(1.0e-4, 1.0e-7, "exponentials, and their difference from 1 from 0.02 on (5e-5)"),
             |a| spray_between(a.f32(), a.f32()).words(),
+        ),
+        // Neighboring gaps, where the series serves.
+        FunctionCase::new(
+            "spray_between",
+            &SPRAY,
+            &[Made(|r| {
+                let [a, apart, ..] = r.map(rng_unit);
+                vec![(3.0 * a).to_bits(), (3.0 * a + 0.02 * apart).to_bits()]
+            })],
+            Tol::relative(3.0e-6, 1.0e-9, "an exponential, and sums of products of what is near 1"),
+            |a| spray_between(a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "spray_places",
+            &SPRAY,
+            &[Made(places)],
+            Tol::relative(2.0e-3, 2.0e-3, "roots of differences of moments (1e-6 of them)")
+                .with_outliers(5.0e-3),
+            |a| {
+                let [depth, first, last] = a.f32s();
+                let found = spray_places(depth, first, last, Vec4::from_array(a.f32s()));
+                [found.depth, found.near, found.far, found.share].words()
+            },
         ),
         FunctionCase::new(
             "spray_border",
