@@ -122,12 +122,15 @@ fn places(random: [u32; 4]) -> Vec<u32> {
     let [first, at, apart, weight] = random.map(rng_unit);
     let (first, last) = (0.5 + 20.0 * first, 1.0 + 30.0 * apart);
     let scale = [1.0, 1.0, 1.0, 2.0e-4][random[0] as usize % 4];
-    let weights =
-        [0.2 + weight, 0.2 + 1.0 - weight, 0.3].map(|weight| if random[1] % 16 == 0 { 0.0 } else { weight });
+    let weights = match random[1] % 16 {
+        0 => [0.0; 3],
+        1 => [0.0, 1.0, 0.0],
+        _ => [0.2 + weight, 1.2 - weight, 0.3],
+    };
     let parts = [0.0, last * scale, last * scale * (0.2 + 0.6 * at)].into_iter().zip(weights);
     let moments =
         parts.fold(Vec4::ZERO, |sum, (x, weight)| sum + weight * Vec4::new(1.0, x, x * x, x * x * x));
-    let words = [weights[0], first, first + last].into_iter().chain(moments.to_array());
+    let words = [weight, first, first + last].into_iter().chain(moments.to_array());
     words.map(f32::to_bits).collect()
 }
 
