@@ -23,7 +23,7 @@ mod scenes;
 mod sky;
 mod streaks;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use downpour_drop::DropShape;
 
@@ -38,7 +38,7 @@ pub(crate) fn run(options: &Options) -> Result<(), String> {
     let folder = run::root().join("target/truth");
     create(&folder)?;
     let maps = cases::maps(options, &folder)?;
-    let program = command(options)?;
+    let program = run::downpour(options.command.as_deref())?;
     let mitsuba = Mitsuba::ready(&folder)?;
     if options.scenes() {
         let (text, misses) = scenes::compare(options, &program, &folder, &mitsuba)?;
@@ -113,17 +113,6 @@ fn specimen(case: &Case<'_>, program: &Path, output: &Path, size: u32) -> Result
     } else {
         Err(format!("{}: downpour specimen failed ({status})", case.name()))
     }
-}
-
-/// Command under test: the one given, or the one of this tree, built.
-fn command(options: &Options) -> Result<PathBuf, String> {
-    if let Some(given) = &options.command {
-        return std::path::absolute(given).map_err(|error| format!("{}: {error}", given.display()));
-    }
-    run::cargo(&["build", "--release", "--locked", "-p", "downpour-cli"], &[])?;
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
-    let name = format!("downpour{}", std::env::consts::EXE_SUFFIX);
-    Ok(run::root().join(target).join("release").join(name))
 }
 
 fn create(folder: &Path) -> Result<(), String> {

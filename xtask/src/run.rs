@@ -1,6 +1,6 @@
 //! Child processes and paths of the workspace.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The root of the workspace.
@@ -25,4 +25,14 @@ pub(crate) fn cargo(arguments: &[&str], environment: &[(&str, &str)]) -> Result<
         .status()
         .map_err(|error| format!("cargo did not start: {error}"))?;
     if status.success() { Ok(()) } else { Err(format!("cargo {} failed", arguments.join(" "))) }
+}
+
+/// The command `downpour`: the one given, or that of this tree, built.
+pub(crate) fn downpour(given: Option<&Path>) -> Result<PathBuf, String> {
+    if let Some(given) = given {
+        return std::path::absolute(given).map_err(|error| format!("{}: {error}", given.display()));
+    }
+    cargo(&["build", "--release", "--locked", "-p", "downpour-cli"], &[])?;
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
+    Ok(root().join(target).join("release").join(format!("downpour{}", std::env::consts::EXE_SUFFIX)))
 }

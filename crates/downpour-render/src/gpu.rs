@@ -7,7 +7,6 @@ mod host;
 mod kept_light;
 mod layers;
 mod medium;
-mod once;
 mod plate;
 mod project;
 mod rain;

@@ -139,6 +139,15 @@ fn medium_region(origin: vec3f, direction: vec3f) -> vec2f {
     return whole;
 }
 
+// Mean of exp(-x') for x' from 0 to x: (1 - exp(-x)) / x, by its series where the difference would lose digits.
+fn medium_decay_mean(x: f32) -> f32 {
+    var mean = 1.0 - x * (0.5 - x / 6.0);
+    if x > 0.02 {
+        mean = (1.0 - exp(-x)) / x;
+    }
+    return mean;
+}
+
 // Optical depth of fog (as in MediumFrame) along a ray whose direction has the upward part `rise`, up to a distance: the integral of
 // sigma exp(-max(height, 0) / scale height), in closed form.
 fn medium_fog_depth(fog: vec4f, rise: f32, distance: f32) -> f32 {
@@ -156,13 +165,7 @@ fn medium_fog_depth(fog: vec4f, rise: f32, distance: f32) -> f32 {
         above = distance * (high / (high - low));
     }
     let foot = max(low, 0.0);
-    let x = (high - foot) * fog.y;
-    // (1 - exp(-x)) / x, by its series where the difference would lose digits.
-    var mean = 1.0 - x * (0.5 - x / 6.0);
-    if x > 0.02 {
-        mean = (1.0 - exp(-x)) / x;
-    }
-    return fog.x * (below + above * exp(-foot * fog.y) * mean);
+    return fog.x * (below + above * exp(-foot * fog.y) * medium_decay_mean((high - foot) * fog.y));
 }
 
 // Part of the light that fog lets through up to a distance along a ray of unit direction from the eye.

@@ -71,13 +71,7 @@ fn spray_between(a: f32, b: f32) -> f32 {
     }
     let above = select(1.0, high / (high - low), low < 0.0);
     let foot = max(low, 0.0);
-    let x = high - foot;
-    // (1 - exp(-x)) / x, by its series where the difference would lose digits.
-    var mean = 1.0 - x * (0.5 - x / 6.0);
-    if x > 0.02 {
-        mean = (1.0 - exp(-x)) / x;
-    }
-    return above * exp(-foot) * mean;
+    return above * exp(-foot) * medium_decay_mean(high - foot);
 }
 
 // Spray along a ray: its optical depth, and two places that have the mean, the variance and the third moment of the distances at which light

@@ -395,18 +395,8 @@ fn masks_case(
         Part::Seen => {
             gpu.submit(&pass.medium())?;
             let pixels = found().len() - 2 * clean.len();
-            // Means over blocks: which part of a ray chance draws may differ, what comes of it may not.
-            let blocks = |found: &[[f32; 4]]| {
-                let [across, down] = SIZE.map(|edge| edge as usize / 16);
-                let mut sums = vec![[0.0; 4]; across * down];
-                for (i, row) in found[pixels..].iter().skip(1).step_by(2).enumerate() {
-                    let block = (i / SIZE[0] as usize / 16) * across + i % SIZE[0] as usize / 16;
-                    for (sum, value) in sums[block].iter_mut().zip(row) {
-                        *sum += value / 256.0;
-                    }
-                }
-                sums
-            };
+            // Which part of a ray chance draws may differ, what comes of it may not.
+            let blocks = |found: &[[f32; 4]]| block_means(found[pixels..].iter().skip(1).step_by(2));
             Ok(run(SIZE[0] / 16, &blocks(&found()), &blocks(&pass.medium_found()?)))
         }
         Part::Filter => {
@@ -421,6 +411,19 @@ fn masks_case(
             Ok(run(SIZE[0], &numbers(&medium), &numbers(&pass.layer()?)))
         }
     }
+}
+
+/// Means over blocks of 16 by 16 pixels.
+fn block_means<'a>(pixels: impl Iterator<Item = &'a [f32; 4]>) -> Vec<[f32; 4]> {
+    let [across, down] = SIZE.map(|edge| edge as usize / 16);
+    let mut means = vec![[0.0; 4]; across * down];
+    for (i, pixel) in pixels.enumerate() {
+        let block = (i / SIZE[0] as usize / 16) * across + i % SIZE[0] as usize / 16;
+        for (mean, value) in means[block].iter_mut().zip(pixel) {
+            *mean += value / 256.0;
+        }
+    }
+    means
 }
 
 /// A random plate through random rain.

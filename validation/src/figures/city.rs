@@ -60,7 +60,7 @@ pub(crate) fn run(options: &Options) -> Result<(), String> {
     if options.files_only {
         return Ok(());
     }
-    let command = built(options)?;
+    let command = run::downpour(options.command.as_deref())?;
     for effect in &effects {
         for state in ["off", "on"] {
             render(&command, &folder, effect, state, options)?;
@@ -80,15 +80,6 @@ fn texts(effect: &Effect) -> Result<[(&'static str, String); 2], String> {
         Ok::<_, String>((state, made))
     };
     Ok([of("off", effect.off)?, of("on", effect.on)?])
-}
-
-/// The command, built if none was given.
-fn built(options: &Options) -> Result<PathBuf, String> {
-    if let Some(command) = &options.command {
-        return Ok(command.clone());
-    }
-    run::cargo(&["build", "--locked", "--release", "-p", "downpour-cli"], &[])?;
-    Ok(run::root().join("target/release/downpour"))
 }
 
 /// Renders a state of an effect as a .png and as a .jpg.

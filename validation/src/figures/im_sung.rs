@@ -107,7 +107,7 @@ impl<'a> Maker<'a> {
     fn ready(options: &'a Options) -> Result<Self, String> {
         let folder = run::root().join("target/figures/im-sung");
         create(&folder)?;
-        let maker = Self { options, program: command(options)?, folder };
+        let maker = Self { options, program: run::downpour(options.command.as_deref())?, folder };
         let (gltf, buffer) = scene::gltf(options.fps, "street.bin");
         maker.write(SCENE, gltf.as_bytes())?;
         maker.write("street.bin", &buffer)?;
@@ -212,17 +212,6 @@ impl<'a> Maker<'a> {
         let file = self.folder.join(name);
         std::fs::write(&file, bytes).map_err(|error| in_file(&file, error.to_string()))
     }
-}
-
-/// The command that makes the pictures: the one given, or the one of this tree, built.
-fn command(options: &Options) -> Result<PathBuf, String> {
-    if let Some(given) = &options.command {
-        return std::path::absolute(given).map_err(|error| in_file(given, error.to_string()));
-    }
-    run::cargo(&["build", "--release", "--locked", "-p", "downpour-cli"], &[])?;
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
-    let name = format!("downpour{}", std::env::consts::EXE_SUFFIX);
-    Ok(run::root().join(target).join("release").join(name))
 }
 
 fn in_file(file: &Path, message: impl std::fmt::Display) -> String {

@@ -4,7 +4,7 @@
 //! that miss the scene under a clear sky, the map has the sun's disk as well. The CPU's pictures are the same bytes on every machine, and
 //! so are the maps; they depend on the renderer, and are generated again when it changes.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use downpour_math::ops::f64 as ops;
 use exr::prelude::{FlatSamples, ReadChannels as _, ReadLayers as _, read};
@@ -49,10 +49,7 @@ pub(crate) fn run(options: &[&str]) -> Result<(), String> {
         ["--check", "--command", file] | ["--command", file, "--check"] => (true, Some(*file)),
         _ => return Err(format!("scenes skies {}; allowed: [--check] [--command FILE]", options.join(" "))),
     };
-    let program = match command {
-        Some(given) => std::path::absolute(given).map_err(|error| format!("{given}: {error}"))?,
-        None => build()?,
-    };
+    let program = run::downpour(command.map(Path::new))?;
     let folder = run::root().join("assets/skies");
     let at = |error: std::io::Error| format!("{}: {error}", folder.display());
     std::fs::create_dir_all(&folder).map_err(at)?;
@@ -79,12 +76,6 @@ pub(crate) fn run(options: &[&str]) -> Result<(), String> {
     } else {
         Err(format!("(cargo xtask scenes skies):\n  {}", wrong.join("\n  ")))
     }
-}
-
-fn build() -> Result<PathBuf, String> {
-    run::cargo(&["build", "--release", "--locked", "-p", "downpour-cli"], &[])?;
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
-    Ok(run::root().join(target).join("release").join(format!("downpour{}", std::env::consts::EXE_SUFFIX)))
 }
 
 /// A picture of 90 degrees, with the directions of its axes.

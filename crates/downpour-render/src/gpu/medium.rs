@@ -3,13 +3,12 @@
 use std::sync::{Arc, OnceLock};
 
 use bytemuck::Zeroable;
-use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu, workgroups};
+use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, made_once, wgpu, workgroups};
 use downpour_shaders::render::medium::{
     MEDIUM_CELLS, MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL, MEDIUM_SMOOTH_KERNEL,
     MEDIUM_SMOOTH_PARTS_KERNEL,
 };
 
-use super::once::once;
 use super::plate::PlateOnGpu;
 use crate::rain::medium::{MediumFrame, MediumLight};
 use crate::spacing::RaySpacing;
@@ -117,7 +116,7 @@ impl MediumPipeline {
         };
         let filters = if medium.medium.fog[0] > 0.0 {
             let parts = buffers.buffer("seen light in fog", pixels * 16, wgpu::BufferUsages::STORAGE)?;
-            let [first, then] = once(&self.smooth, || {
+            let [first, then] = made_once(&self.smooth, || {
                 let kernel = |kernel| ComputeKernel::new(&self.gpu, kernel, &[]);
                 Ok([kernel(&MEDIUM_SMOOTH_PARTS_KERNEL)?, kernel(&MEDIUM_SMOOTH_KERNEL)?])
             })?;

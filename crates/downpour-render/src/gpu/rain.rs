@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use downpour_drop::oscillation::Fluids;
-use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
+use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, made_once, wgpu};
 use downpour_math::pyramid::PyramidLevel;
 use downpour_shaders::common::PYRAMID_KERNEL;
 use downpour_shaders::render::rain::{
@@ -14,7 +14,6 @@ use super::drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
 use super::kept_light::KeptLight;
 use super::layers::{LayersPass, LayersPipeline};
 use super::medium::{MediumPass, MediumPipeline};
-use super::once::once;
 use super::plate::PlateOnGpu;
 use super::project::{FallingOnGpu, JobGroups, ListOnGpu, ProjectPass, ProjectPipeline};
 use super::spray::{SprayOf, SprayPass, SprayPipeline};
@@ -105,12 +104,12 @@ impl RainPipeline {
 
     /// The pipeline of layers.
     fn layers(&self) -> Result<&LayersPipeline, GpuError> {
-        once(&self.layers, || LayersPipeline::new(&self.gpu))
+        made_once(&self.layers, || LayersPipeline::new(&self.gpu))
     }
 
     /// The pipelines of spray.
     fn spray(&self) -> Result<&SprayPipeline, GpuError> {
-        once(&self.spray, || SprayPipeline::new(&self.gpu))
+        made_once(&self.spray, || SprayPipeline::new(&self.gpu))
     }
 
     /// Drops whose lists the device can bind.

@@ -1,8 +1,8 @@
 //! Spray before a picture: the layer of droplets over what rain hits. Twin of `shaders/wgsl/render/spray.wgsl`, where the method is
 //! described, and of `spray_frame.wgsl`.
 //!
-//! What it is: a medium over the first surfaces that the mean fall meets ([`map`]), lit by lamps at their places ([`light`]), which shows what
-//! unresolved drops show and stands behind all drops of the picture ([`blend`]): it is within some centimeters of a surface. Its law is
+//! What it is: a medium over the first surfaces that the mean fall meets (`map`), lit by lamps at their places (`light`), which shows what
+//! unresolved drops show and stands behind all drops of the picture (`blend`): it is within some centimeters of a surface. Its law is
 //! [`downpour_drop::spray`]. In the form of Tatarchuk & Isidoro 2006, section 3.4, this is the misty halo along the edges of objects: fins
 //! stand on silhouettes of a picture, spray on what is there.
 
@@ -21,6 +21,7 @@ use downpour_shaders::render::spray::{
 use glam::{Vec2, Vec3, Vec3Swizzles as _, Vec4};
 use rayon::prelude::*;
 
+use super::medium::fog::medium_decay_mean;
 use super::medium::{MediumFrame, RainMedium};
 use crate::camera::Camera;
 use crate::spacing::RaySpacing;
@@ -296,10 +297,7 @@ pub fn spray_between(a: f32, b: f32) -> f32 {
     }
     let above = if low < 0.0 { high / (high - low) } else { 1.0 };
     let foot = low.max(0.0);
-    let x = high - foot;
-    // (1 - exp(-x)) / x, by its series where the difference would lose digits.
-    let mean = if x > 0.02 { (1.0 - ops::exp(-x)) / x } else { 1.0 - x * (0.5 - x / 6.0) };
-    above * ops::exp(-foot) * mean
+    above * ops::exp(-foot) * medium_decay_mean(high - foot)
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::mem::offset_of;
 use std::sync::OnceLock;
 
-use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu, workgroups_for};
+use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, made_once, wgpu, workgroups_for};
 use downpour_shaders::sim::bounce::{
     BOUNCE_CLEAR_KERNEL, BOUNCE_FIND_KERNEL, BOUNCE_HIT_AMONG_HOLES_KERNEL, BOUNCE_HIT_KERNEL, BOUNCE_LANES,
     BOUNCE_LIST_KERNEL, BOUNCE_SLICE,
@@ -17,7 +17,7 @@ use downpour_wind::UniformWind;
 use glam::{DVec3, Vec3};
 
 use super::GpuSimError;
-use super::list::{BoundKernel, COUNTS, DropListOnGpu, list_buffer, made_once};
+use super::list::{BoundKernel, COUNTS, DropListOnGpu, list_buffer};
 use crate::drift::Drift;
 use crate::field::frame::{FieldQuery, ShelterFrame};
 use crate::field::{EyeDrop, RainField, check_time};

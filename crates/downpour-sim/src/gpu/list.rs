@@ -1,7 +1,5 @@
 //! The list of a picture's drops on a device.
 
-use std::sync::OnceLock;
-
 use downpour_gpu::{BufferSource, ComputeKernel, Gpu, GpuError, wgpu};
 
 use crate::field::EyeDrop;
@@ -88,16 +86,4 @@ pub(super) fn list_buffer(
 ) -> Result<wgpu::Buffer, GpuError> {
     let places = u64::from(places.next_multiple_of(LIST_STEP));
     buffers.buffer(label, behind + places * size_of::<EyeDrop>() as u64, wgpu::BufferUsages::STORAGE)
-}
-
-/// What is made when it is first asked for.
-pub(super) fn made_once<T>(
-    kept: &OnceLock<T>,
-    make: impl FnOnce() -> Result<T, GpuError>,
-) -> Result<&T, GpuError> {
-    if let Some(known) = kept.get() {
-        return Ok(known);
-    }
-    let made = make()?;
-    Ok(kept.get_or_init(|| made))
 }

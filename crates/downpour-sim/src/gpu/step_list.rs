@@ -4,10 +4,10 @@
 use std::sync::OnceLock;
 
 use bytemuck::Zeroable as _;
-use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, wgpu, workgroups_for};
+use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, made_once, wgpu, workgroups_for};
 use downpour_shaders::sim::step_list::{STEP_LIST_CLEAR_KERNEL, STEP_LIST_KERNEL, STEP_SPLASH_KERNEL};
 
-use super::list::{BoundKernel, made_once};
+use super::list::BoundKernel;
 use super::simulation::StepBuffers;
 use super::{CollisionMapOnGpu, DropListOnGpu, GpuSimError};
 use crate::field::EyeDrop;

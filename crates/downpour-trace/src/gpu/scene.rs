@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, FramePasses, Gpu, GpuError, wgpu};
+use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, FramePasses, Gpu, GpuError, made_once, wgpu};
 use downpour_shaders::render::scene::{
     SKYLIGHT_KERNEL, SKYLIGHT_PASSES, TRACE_KERNEL, TRACE_SAMPLE_KERNEL, TRACE_SEEN_KERNEL, TRACE_STATE_BYTES,
 };
@@ -90,10 +90,7 @@ impl ScenePipeline {
     fn made(gpu: &Gpu, samples: SampleDispatches) -> Result<Self, GpuError> {
         let tracers: [OnceLock<ComputeKernel>; SceneParts::COUNT] = Default::default();
         let plain = SceneParts::default();
-        tracers[plain.index()].get_or_init({
-            let made = tracer(gpu, samples, plain)?;
-            || made
-        });
+        made_once(&tracers[plain.index()], || tracer(gpu, samples, plain))?;
         let skylight = ComputeKernel::new(gpu, &SKYLIGHT_KERNEL, &[])?;
         let seen = match samples {
             SampleDispatches::Together => None,
@@ -105,12 +102,7 @@ impl ScenePipeline {
     /// The kernel that traces a frame, with what the scene has and without what it has not.
     fn tracer(&self, frame: &RenderFrame) -> Result<&ComputeKernel, GpuError> {
         let parts = SceneParts::of(frame);
-        let cell = &self.tracers[parts.index()];
-        if let Some(kernel) = cell.get() {
-            return Ok(kernel);
-        }
-        let made = tracer(&self.gpu, self.samples, parts)?;
-        Ok(cell.get_or_init(|| made))
+        made_once(&self.tracers[parts.index()], || tracer(&self.gpu, self.samples, parts))
     }
 
     /// True if all samples of a pixel are one dispatch.

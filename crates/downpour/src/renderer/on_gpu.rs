@@ -1,10 +1,10 @@
 //! Frames drawn by a GPU.
 
-use std::cell::{OnceCell, RefCell};
-use std::sync::Arc;
+use std::cell::RefCell;
+use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
-use downpour_gpu::Gpu;
+use downpour_gpu::{Gpu, made_once};
 use downpour_lattice::gpu::puddle::PuddleKernels;
 use downpour_render::gpu::{BehindGlass, EnvironmentMap, GlassRenderer};
 use downpour_render::picture::PictureOptions;
@@ -27,20 +27,20 @@ pub(super) struct OnGpu {
     gpu: Gpu,
     renderer: PictureRenderer,
     /// Made for the first frame that is seen through a pane.
-    glass: OnceCell<GlassRenderer>,
+    glass: OnceLock<GlassRenderer>,
     /// The rain in closed form of the last frame, and the same on the device.
     field: RefCell<Option<(Arc<RainField>, FieldOnGpu)>>,
     /// True if ripples of puddles stay on the device.
     holds_ripples: bool,
     /// Made for the first puddles.
-    puddles: OnceCell<PuddleKernels>,
+    puddles: OnceLock<PuddleKernels>,
 }
 
 impl OnGpu {
     /// `drives_ripples`: a software driver holds the ripples of puddles, too.
     pub(super) fn new(gpu: Gpu, renderer: PictureRenderer, drives_ripples: bool) -> Self {
         let holds_ripples = drives_ripples || !gpu.adapter().is_software();
-        let (glass, puddles) = (OnceCell::new(), OnceCell::new());
+        let (glass, puddles) = (OnceLock::new(), OnceLock::new());
         Self { gpu, renderer, glass, field: RefCell::default(), holds_ripples, puddles }
     }
 
@@ -51,13 +51,7 @@ impl OnGpu {
 
     /// Moves the ripples of puddles to the device.
     pub(super) fn hold_ripples(&self, ground: &mut WetGround) -> Result<(), RendererError> {
-        let kernels = match self.puddles.get() {
-            Some(kernels) => kernels,
-            None => {
-                let made = PuddleKernels::new(&self.gpu)?;
-                self.puddles.get_or_init(|| made)
-            }
-        };
+        let kernels = made_once(&self.puddles, || PuddleKernels::new(&self.gpu))?;
         Ok(ground.move_to_device(kernels)?)
     }
 
@@ -183,10 +177,6 @@ impl OnGpu {
 
     /// The pipelines of panes.
     fn pane(&self) -> Result<&GlassRenderer, RendererError> {
-        if let Some(renderer) = self.glass.get() {
-            return Ok(renderer);
-        }
-        let made = GlassRenderer::new(&self.gpu)?;
-        Ok(self.glass.get_or_init(|| made))
+        Ok(made_once(&self.glass, || GlassRenderer::new(&self.gpu))?)
     }
 }

@@ -17,7 +17,7 @@ use downpour_trace::scene::SceneView;
 
 use glam::Vec4;
 
-use super::{ABOVE, BESIDE, INSIDE, LEVEL, Placement, Prepared, SEEN, SIZE, run};
+use super::{ABOVE, BESIDE, INSIDE, LEVEL, Placement, Prepared, SEEN, SIZE, block_means, run};
 use crate::Domain::{Made, Uniform};
 use crate::function::Run;
 use crate::kept::kept;
@@ -95,17 +95,11 @@ fn spray_case(gpu: &Gpu, placement: Placement, part: Part) -> Result<Run, GpuErr
         Part::Seen => {
             let mut own: Vec<[f32; 4]> = found.iter().map(|row| [0.0, 0.0, 0.0, row[3]]).collect();
             rain.medium_light(&both[0]).light_spray(&mut own);
-            // Means over blocks: which lamp a number draws may differ, what comes of it may not.
-            let blocks = |rows: &[[f32; 4]]| {
-                let mut sums = vec![[0.0; 4]; (SIZE[0] / 16 * (SIZE[1] / 16)) as usize];
-                for (i, row) in (0..).zip(numbers(rows, 1)) {
-                    let block = i / SIZE[0] / 16 * (SIZE[0] / 16) + i % SIZE[0] / 16;
-                    for (sum, value) in sums[block as usize].iter_mut().zip(&row[..3]) {
-                        *sum += value / 256.0;
-                    }
-                }
-                sums
+            // Which lamp a number draws may differ, what comes of it may not. The fourth numbers are halves.
+            let lit = |rows: &[[f32; 4]]| {
+                numbers(rows, 1).into_iter().map(|[r, g, b, _]| [r, g, b, 0.0]).collect::<Vec<_>>()
             };
+            let blocks = |rows: &[[f32; 4]]| block_means(lit(rows).iter());
             Ok(run(SIZE[0] / 16, &blocks(&own), &blocks(&found)))
         }
         Part::Blend => {

@@ -38,6 +38,11 @@ pub(super) fn phase_integral(asymmetry: f64, interval: u32) -> f64 {
     (at(0.0) + 4.0 * at(0.25) + 2.0 * at(0.5) + 4.0 * at(0.75) + at(1.0)) * width / 12.0
 }
 
+/// Mean of `exp(-x')` for `x'` from 0 to `x`: `(1 - exp(-x)) / x`, by its series where the difference would lose digits.
+pub(in crate::rain) fn medium_decay_mean(x: f32) -> f32 {
+    if x > 0.02 { (1.0 - ops::exp(-x)) / x } else { 1.0 - x * (0.5 - x / 6.0) }
+}
+
 /// Optical depth of fog along a ray whose direction has the upward part `rise`, up to a distance in meters. `fog`: as
 /// [`MediumFrame::fog`].
 #[must_use]
@@ -53,9 +58,7 @@ pub fn medium_fog_depth(fog: Vec4, rise: f32, distance: f32) -> f32 {
         above = distance * (high / (high - low));
     }
     let foot = low.max(0.0);
-    let x = (high - foot) * fog.y;
-    let mean = if x > 0.02 { (1.0 - ops::exp(-x)) / x } else { 1.0 - x * (0.5 - x / 6.0) };
-    fog.x * (below + above * ops::exp(-foot * fog.y) * mean)
+    fog.x * (below + above * ops::exp(-foot * fog.y) * medium_decay_mean((high - foot) * fog.y))
 }
 
 impl MediumFrame {
