@@ -145,6 +145,32 @@ fn undo_brings_the_file_back() {
     assert_eq!(fs::read_to_string(folder.path().join("field.toml")).unwrap(), SCENE);
 }
 
+/// A puddle is placed, sized and turned by its handles; the picture and the window are saved; a file is chosen by its name; the speed is told.
+#[test]
+fn handles_dialogs_and_commands_work_without_a_display() {
+    let folder = folder();
+    let steps = "add puddle -2 0 6\ndrag width 2\ndrag length 0.5\ndrag turn 30\n\
+                 command Save picture\ncommand Save screenshot\nmeasure 3\n\
+                 command Save as\npress Ctrl+A\ntype turned.toml\npress Enter\nclose\n";
+    let output = script(folder.path(), steps);
+    assert!(output.status.success(), "{}", message(&output));
+    assert!(message(&output).contains("pictures per second"), "{}", message(&output));
+    assert_eq!(fs::read_to_string(folder.path().join("field.toml")).unwrap(), SCENE);
+    let weather =
+        Weather::parse("turned.toml", &fs::read_to_string(folder.path().join("turned.toml")).unwrap());
+    let puddle = &weather.unwrap().puddles[0];
+    let [width, length] = puddle.size;
+    let turn = puddle.turn.to_degrees();
+    assert!(
+        (width - 8.0).abs() < 0.1 && (length - 2.0).abs() < 0.1 && (turn - 30.0).abs() < 1.0,
+        "{puddle:?}"
+    );
+    let sizes: Vec<(u32, u32)> = ["field_001.png", "field_002.png"]
+        .map(|name| image::image_dimensions(folder.path().join(name)).unwrap())
+        .to_vec();
+    assert!(sizes[0].0 < 400 && sizes[1] == (900, 600), "{sizes:?}");
+}
+
 /// What is wrong is said with file and line or key, what was found and what is allowed, and the exit code is that of the command.
 #[test]
 fn bad_input_is_explained() {

@@ -9,6 +9,7 @@ mod inspector;
 mod list;
 mod overlay;
 mod paint;
+mod picker;
 mod status;
 mod timeline;
 mod top;
@@ -24,6 +25,7 @@ pub use clock::Clock;
 pub use command::Command;
 pub use dialogs::Dialog;
 pub use handles::{Handle, HandleKind};
+pub use picker::{Picker, Purpose};
 
 use crate::brush::Brush;
 use crate::document::{Document, DocumentError};
@@ -82,7 +84,7 @@ pub enum Wish {
     Close,
     /// It is to fill the screen, or no longer.
     FullScreen,
-    /// It is to be saved as a picture.
+    /// It is to be saved as a picture, with its panels.
     Screenshot,
 }
 
@@ -230,6 +232,12 @@ impl App {
         &self.handles
     }
 
+    /// Size of the picture's part of the window, in pixels.
+    #[must_use]
+    pub fn window_size(&self) -> [u32; 2] {
+        self.window
+    }
+
     /// Rectangle of the picture, in points.
     #[must_use]
     pub fn picture_rect(&self) -> egui::Rect {
@@ -318,12 +326,15 @@ impl App {
 
     /// Writes the picture, without panels and handles, as a PNG.
     pub fn save_picture(&mut self, path: &Path) {
-        let Some(drawn) = self.drawn.clone() else {
-            self.complain("there is no picture yet");
-            return;
-        };
-        let [width, height] = drawn.size;
-        let written = downpour::render::file::write_png(width, height, &drawn.pixels)
+        match self.drawn.clone() {
+            Some(drawn) => self.save_pixels(path, drawn.size, &drawn.pixels),
+            None => self.complain("there is no picture yet"),
+        }
+    }
+
+    /// Writes pixels, rows from the top, as a PNG.
+    pub fn save_pixels(&mut self, path: &Path, [width, height]: [u32; 2], pixels: &[[u8; 3]]) {
+        let written = downpour::render::file::write_png(width, height, pixels)
             .map_err(|error| error.to_string())
             .and_then(|png| crate::document::write_whole(path, &png).map_err(|error| error.to_string()));
         match written {

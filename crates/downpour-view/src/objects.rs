@@ -38,8 +38,8 @@ pub struct Object {
     pub height: Option<f64>,
     /// Half angle of a cone, radians.
     pub cone: Option<f64>,
-    /// Edges of a rectangle, m, and its turn in radians.
-    pub rectangle: Option<([f64; 2], f64)>,
+    /// Width and length of a rectangle, m, with their key, and its turn in radians.
+    pub rectangle: Option<(KeyPath, [f64; 2], f64)>,
 }
 
 /// Key of a direction.
@@ -96,7 +96,7 @@ fn object(id: ObjectId, entry: &Plain, time_s: f64) -> Option<Object> {
         "uniform" => {
             object.direction = match number("towards_deg") {
                 Some(degrees) => {
-                    Some((DirectionKey::Degrees(path.key("towards_deg")), DVec3::from(level(degrees))))
+                    Some((DirectionKey::Degrees(path.key("towards_deg")), level(degrees).into()))
                 }
                 None => along("direction", DVec3::X),
             };
@@ -132,7 +132,9 @@ fn object(id: ObjectId, entry: &Plain, time_s: f64) -> Option<Object> {
         "puddle" => {
             object.position = Some((path.key("position_m"), vector("position_m")?));
             let size: [f64; 2] = table.get("size_m")?.numbers()?.try_into().ok()?;
-            object.rectangle = Some((size, number("turn_deg").unwrap_or(0.0).to_radians()));
+            let degrees = number("turn_deg").unwrap_or(0.0);
+            object.rectangle = Some((path.key("size_m"), size, degrees.to_radians()));
+            object.direction = Some((DirectionKey::Degrees(path.key("turn_deg")), level(degrees).into()));
         }
         _ => object.position = Some((path.key("position_m"), vector("position_m")?)),
     }

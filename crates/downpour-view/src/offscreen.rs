@@ -12,6 +12,9 @@ use crate::theme;
 /// Time between two passes, s.
 const PASS_S: f64 = 1.0 / 60.0;
 
+/// Passes in which what fades in is there.
+const FADE_PASSES: u32 = 15;
+
 /// A window without a window.
 pub struct Offscreen {
     context: egui::Context,
@@ -61,11 +64,11 @@ impl Offscreen {
         app.take_wishes()
     }
 
-    /// Presses and releases a key.
+    /// Presses and releases a key. Returns the wishes of the application.
     pub fn key(&mut self, app: &mut App, modifiers: Modifiers, key: egui::Key) -> Vec<Wish> {
         let event = |pressed| Event::Key { key, physical_key: None, pressed, repeat: false, modifiers };
-        let wishes = self.pass(app, vec![Event::ModifiersChanged(modifiers), event(true)]);
-        self.pass(app, vec![event(false), Event::ModifiersChanged(Modifiers::NONE)]);
+        let mut wishes = self.pass(app, vec![Event::ModifiersChanged(modifiers), event(true)]);
+        wishes.extend(self.pass(app, vec![event(false), Event::ModifiersChanged(Modifiers::NONE)]));
         wishes
     }
 
@@ -88,6 +91,13 @@ impl Offscreen {
         self.pass(app, vec![Event::PointerGone]);
     }
 
+    /// Passes until menus and dialogs have come up: they fade in.
+    pub fn rest(&mut self, app: &mut App) {
+        for _ in 0..FADE_PASSES {
+            self.pass(app, Vec::new());
+        }
+    }
+
     /// Passes until the newest picture is shown. False if that takes longer than ten minutes.
     pub fn settle(&mut self, app: &mut App) -> bool {
         self.pass(app, Vec::new());
@@ -101,6 +111,12 @@ impl Offscreen {
     #[must_use]
     pub fn pixels(&self) -> Vec<[u8; 3]> {
         self.raster.draw(&self.primitives, self.size.map(|edge| edge as usize), 1.0, theme::PANEL)
+    }
+
+    /// Size of the window, in pixels.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        self.size
     }
 
     /// Writes the window as a PNG.

@@ -7,7 +7,7 @@
 //! | `open FILE` | opens a weather file or a model |
 //! | `add KIND [X Y Z]` | adds an object at a place, or where the view looks, and selects it |
 //! | `select LIST[INDEX] ...` | selects objects, such as `wind[0]`; without arguments none |
-//! | `drag x|y|z METERS`, `drag radius|strength FACTOR` | drags a handle of the selection in the picture |
+//! | `drag x|y|z METERS`, `drag radius|width|length|strength FACTOR`, `drag turn DEGREES` | drags a handle of the selection in the picture |
 //! | `set KEY VALUE`, `reset KEY` | sets a key at the time of the clock to a value as TOML writes it; takes its default |
 //! | `key KEY TIME VALUE`, `unkey KEY TIME` | sets or deletes a keyframe |
 //! | `name TEXT` | names the selected object |
@@ -19,16 +19,19 @@
 //! | `save`, `save-as FILE` | saves |
 //! | `close` | closes; refused while changes are not saved |
 //! | `wait N` | draws N more pictures of the present state |
+//! | `measure N` | draws N pictures of a running clock, and tells how fast they come and at what scale |
+//! | `type TEXT` | writes text into the field that has the focus |
 //! | `screenshot FILE.png` | writes the window, once its picture shows the present state |
 //! | `drops FILE.csv` | writes the drops of the picture |
 //! | `quit` | ends the script |
 
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use egui::{Key, Modifiers, Pos2};
 use glam::DVec3;
 
-use crate::app::{App, AppOptions, Command, HandleKind};
+use crate::app::{App, AppOptions, Command, HandleKind, Wish};
 use crate::document::{Document, write_whole};
 use crate::key_path::KeyPath;
 use crate::objects::{LISTS, ObjectId};
@@ -218,11 +221,18 @@ impl Session {
                     Command::ALL.into_iter().find(|command| command.label().trim_end_matches('…') == label);
                 let labels = || Command::ALL.map(|command| command.label().trim_end_matches('…')).join(", ");
                 self.app.run(known.ok_or_else(|| format!("command \"{label}\"; allowed: {}", labels()))?);
-                self.window.pass(&mut self.app, Vec::new());
+                let wishes = self.window.pass(&mut self.app, Vec::new());
+                self.grant(wishes)?;
             }
             "press" => {
                 let (modifiers, key) = keys(word(words, 0, "key")?)?;
-                self.window.key(&mut self.app, modifiers, key);
+                let wishes = self.window.key(&mut self.app, modifiers, key);
+                self.grant(wishes)?;
+            }
+            "type" => {
+                let text = egui::Event::Text(words.join(" "));
+                let wishes = self.window.pass(&mut self.app, vec![text]);
+                self.grant(wishes)?;
             }
             "time" => self.app.clock_mut().time_s = number(words, 0, "time")?.max(0.0),
             "slice" => {
@@ -234,12 +244,10 @@ impl Session {
             "paint" => self.paint(words)?,
             "save" => edited(self.app.document_mut().save())?,
             "save-as" => edited(self.app.document_mut().save_as(&path(words, 0)?))?,
-            "close" => {
-                if !self.app.may_close() {
-                    self.app.dismiss();
-                    return Err("changes are not saved; allowed: save before close".to_owned());
-                }
-                self.is_closed = true;
+            "close" => self.close()?,
+            "measure" => {
+                let count = number(words, 0, "number of pictures")?.clamp(1.0, 1000.0) as usize;
+                told(&self.measure(count)?);
             }
             "wait" => {
                 for _ in 0..number(words, 0, "number of pictures")?.clamp(0.0, 1000.0) as u32 {
@@ -248,6 +256,7 @@ impl Session {
                 }
             }
             "screenshot" => {
+                self.window.rest(&mut self.app);
                 self.settle()?;
                 let path = path(words, 0)?;
                 self.window.screenshot(&path)?;
@@ -265,6 +274,61 @@ impl Session {
             _ => return Err(format!("step \"{step}\"; allowed: {STEPS}")),
         }
         Ok(())
+    }
+
+    fn close(&mut self) -> Result<(), String> {
+        if !self.app.is_discarded() && !self.app.may_close() {
+            self.app.dismiss();
+            return Err("changes are not saved; allowed: save before close".to_owned());
+        }
+        self.is_closed = true;
+        Ok(())
+    }
+
+    /// Does what the application wishes of the window around it.
+    fn grant(&mut self, wishes: Vec<Wish>) -> Result<(), String> {
+        for wish in wishes {
+            match wish {
+                Wish::Close => self.close()?,
+                Wish::FullScreen => return Err("without a display there is no screen to fill".to_owned()),
+                Wish::Screenshot => {
+                    self.window.rest(&mut self.app);
+                    self.settle()?;
+                    let place = self.app.screenshot_place();
+                    self.app.save_pixels(&place, self.window.size(), &self.window.pixels());
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Draws pictures of a running clock. Returns what was measured over the second half of them: the first ones find the scale.
+    fn measure(&mut self, count: usize) -> Result<String, String> {
+        let mut times_ms = Vec::with_capacity(count);
+        for _ in 0..count {
+            let before = self.app.clock_mut().time_s;
+            self.app.clock_mut().time_s = before + 1.0 / 30.0;
+            let begin = Instant::now();
+            self.settle()?;
+            times_ms.push(begin.elapsed().as_secs_f64() * 1.0e3);
+        }
+        let drawn = self.app.drawn().ok_or("there is no picture")?;
+        let [width, height] = drawn.size;
+        let (drops, adapter) = (drawn.drops_drawn, &drawn.adapter);
+        let of = self.app.window_size();
+        let long = drawn.passes.iter().filter(|(_, ms)| *ms >= 0.05);
+        let passes: Vec<String> = long.map(|(name, ms)| format!("{name} {ms:.1} ms")).collect();
+        let mut late = times_ms.split_off(count / 2);
+        late.sort_by(f64::total_cmp);
+        let [median, slow] = [late[late.len() / 2], late[late.len() * 9 / 10]];
+        Ok(format!(
+            "{:.1} pictures per second (median {median:.1} ms, nine of ten within {slow:.1} ms) of {width} x {height} \
+             in a window of {} x {}, {drops} drops, {adapter}; {}",
+            1.0e3 / median,
+            of[0],
+            of[1],
+            passes.join(", "),
+        ))
     }
 
     /// Draws until the picture shows the present state.
@@ -290,8 +354,15 @@ impl Session {
         let kind = match (handle, axis) {
             (_, Some(axis)) => HandleKind::Axis(axis),
             ("radius", _) => HandleKind::Radius,
+            ("width", _) => HandleKind::Edge(0),
+            ("length", _) => HandleKind::Edge(1),
+            ("turn", _) => HandleKind::Direction,
             ("strength", _) => HandleKind::Strength,
-            _ => return Err(format!("handle \"{handle}\"; allowed: x, y, z, radius, strength")),
+            _ => {
+                return Err(format!(
+                    "handle \"{handle}\"; allowed: x, y, z, radius, width, length, turn, strength"
+                ));
+            }
         };
         let known = self.app.handles().iter().find(|known| known.kind == kind).copied();
         let known = known.ok_or_else(|| format!("the selection has no handle {handle} in the picture"))?;
@@ -323,8 +394,8 @@ impl Session {
 }
 
 /// Steps of a script.
-const STEPS: &str = "open, add, select, drag, set, reset, key, unkey, name, command, press, time, slice, tracers, paint, \
-                     save, save-as, close, wait, screenshot, drops, quit";
+const STEPS: &str = "open, add, select, drag, set, reset, key, unkey, name, command, press, type, time, slice, tracers, paint, \
+                     save, save-as, close, wait, measure, screenshot, drops, quit";
 
 /// Reads a script.
 ///

@@ -1,5 +1,7 @@
 //! The window of the system around the application.
 
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Duration;
 
 use crate::app::{App, AppOptions, Wish};
@@ -60,7 +62,9 @@ pub fn run(document: Document, size: [u32; 2], options: AppOptions) -> Result<()
         theme::apply(&creation.egui_ctx);
         let context = creation.egui_ctx.clone();
         app.engine().on_answer(move || context.request_repaint());
-        Ok(Box::new(Shell { app, title: String::new(), is_closing: false, is_full: false })
+        let (send_shot, shots) = channel();
+        let title = String::new();
+        Ok(Box::new(Shell { app, title, is_closing: false, is_full: false, send_shot, shots })
             as Box<dyn eframe::App>)
     };
     eframe::run_native("Downpour", native, Box::new(create)).map_err(|error| {
@@ -78,6 +82,9 @@ struct Shell {
     title: String,
     is_closing: bool,
     is_full: bool,
+    /// Pictures of the window, which the system gives back after it has drawn it.
+    send_shot: Sender<Arc<egui::ColorImage>>,
+    shots: Receiver<Arc<egui::ColorImage>>,
 }
 
 impl eframe::App for Shell {
@@ -111,10 +118,20 @@ impl eframe::App for Shell {
                     context.send_viewport_cmd(egui::ViewportCommand::Fullscreen(self.is_full));
                 }
                 Wish::Screenshot => {
-                    let place = self.app.screenshot_place();
-                    self.app.save_picture(&place);
+                    let (send, waker) = (self.send_shot.clone(), context.clone());
+                    context.request_screenshot(move |image| {
+                        // The window may be gone by then.
+                        let _ = send.send(image);
+                        waker.request_repaint();
+                    });
                 }
             }
+        }
+        for image in self.shots.try_iter() {
+            let pixels: Vec<[u8; 3]> =
+                image.pixels.iter().map(|pixel| [pixel.r(), pixel.g(), pixel.b()]).collect();
+            let place = self.app.screenshot_place();
+            self.app.save_pixels(&place, image.size.map(|edge| edge as u32), &pixels);
         }
         context.request_repaint_after(Duration::from_millis(500));
     }

@@ -37,7 +37,9 @@ pub fn model(object: &Object, anchor: DVec3) -> Vec<Wire> {
         "spot" => spot(at, along, object.cone.unwrap_or(0.5)),
         "directional" => parallel(at, along, 3.0),
         "point" => bulb(at),
-        "puddle" => object.rectangle.map(|(size, turn)| rectangle(at, size, turn)).unwrap_or_default(),
+        "puddle" => {
+            object.rectangle.as_ref().map(|(_, size, turn)| rectangle(at, *size, *turn)).unwrap_or_default()
+        }
         _ => vec![line(vec![at + DVec3::Y * 0.15, at - DVec3::Y * 0.35], true)],
     }
 }
@@ -148,9 +150,15 @@ fn spot(at: DVec3, along: DVec3, half_angle: f64) -> Vec<Wire> {
     wires
 }
 
+/// Directions along which a level rectangle has its width and its length. `turn`: radians about the vertical, from +X toward +Z.
+pub fn rectangle_axes(turn: f64) -> [DVec3; 2] {
+    let (x, z) = (ops::cos(turn), ops::sin(turn));
+    [DVec3::new(x, 0.0, z), DVec3::new(-z, 0.0, x)]
+}
+
 fn rectangle(at: DVec3, size: [f64; 2], turn: f64) -> Vec<Wire> {
-    let along = DVec3::new(ops::cos(turn), 0.0, ops::sin(turn)) * (0.5 * size[0]);
-    let beside = DVec3::new(-ops::sin(turn), 0.0, ops::cos(turn)) * (0.5 * size[1]);
+    let [along, beside] = rectangle_axes(turn);
+    let (along, beside) = (along * (0.5 * size[0]), beside * (0.5 * size[1]));
     let corners = [-along - beside, along - beside, along + beside, -along + beside, -along - beside];
     vec![line(corners.map(|corner| at + corner + DVec3::Y * 0.01).to_vec(), false)]
 }

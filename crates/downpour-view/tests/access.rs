@@ -145,3 +145,73 @@ fn unsaved_changes_are_asked_about() {
     harness.run_steps(3);
     assert_eq!(harness.state().dialog(), None);
 }
+
+/// A file is chosen by the keyboard: from the list of the folder, or by its name. What is not a file of its kind is refused in the dialog.
+#[test]
+fn files_are_opened_from_a_dialog() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("other.toml"), TEXT.replace("20", "30")).unwrap();
+    std::fs::write(folder.path().join("notes.txt"), "no weather").unwrap();
+    std::fs::write(folder.path().join("broken.toml"), "[rain]\nrate = 3\n").unwrap();
+    std::fs::create_dir(folder.path().join("clips")).unwrap();
+    let mut harness = window(&folder, TEXT);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::O);
+    harness.run_steps(3);
+    assert!(harness.query_by_label("other.toml").is_some() && harness.query_by_label("clips/").is_some());
+    assert!(harness.query_by_label("notes.txt").is_none());
+    // The field has the focus: a name and Enter. What is refused is explained there.
+    harness.event(egui::Event::Text("broken.toml".to_owned()));
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    assert!(harness.state().dialog().is_some());
+    assert!(
+        harness.state().message().is_some_and(|(text, is_error)| *is_error && text.contains("broken.toml"))
+    );
+    harness.get_by_label("other.toml").click();
+    harness.run_steps(3);
+    harness.get_by_label("Open").click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().dialog(), None);
+    assert_eq!(harness.state().document().title(), "other.toml");
+}
+
+/// Another file is replaced only after a question; the own name is saved as it is.
+#[test]
+fn a_file_that_exists_is_replaced_only_when_told_twice() {
+    let folder = tempfile::tempdir().unwrap();
+    let other = folder.path().join("other.toml");
+    std::fs::write(&other, "# kept\n").unwrap();
+    let mut harness = window(&folder, TEXT);
+    harness.key_press_modifiers(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S);
+    harness.run_steps(3);
+    harness.get_by_label("other.toml").click();
+    harness.run_steps(3);
+    let press = |harness: &mut Harness<'static, App>, label: &str| {
+        let buttons = harness.get_all_by_role_and_label(Role::Button, label);
+        buttons.last().unwrap().click();
+        harness.run_steps(3);
+    };
+    press(&mut harness, "Save");
+    assert_eq!(std::fs::read_to_string(&other).unwrap(), "# kept\n");
+    press(&mut harness, "Replace");
+    assert_eq!(harness.state().dialog(), None);
+    assert_eq!(std::fs::read_to_string(&other).unwrap(), TEXT);
+    assert_eq!(harness.state().document().path(), Some(other.as_path()));
+}
+
+/// A model is taken into the weather from the dialog.
+#[test]
+fn models_and_skies_are_imported_from_a_dialog() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("house.glb"), "no model, but a name").unwrap();
+    let mut harness = window(&folder, TEXT);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::I);
+    harness.run_steps(3);
+    harness.get_by_label("house.glb").click();
+    harness.run_steps(3);
+    harness.get_by_label("Import").click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().dialog(), None);
+    assert!(harness.state().document().text().contains("file = \"house.glb\""));
+}

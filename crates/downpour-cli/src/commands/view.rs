@@ -39,17 +39,28 @@ pub(crate) struct ViewArguments {
     /// Additional folder in which the files of a weather are searched; may be repeated.
     #[arg(long, value_name = "FOLDER")]
     asset_root: Vec<PathBuf>,
-    /// Part of the size of the window at which a script draws its pictures, 0.05 to 1.
+    /// Part of the size of the window at which a script draws its pictures, 0.05 to 1, or `auto`: what keeps a window fluid.
     #[arg(long, value_name = "PART", default_value = "1", requires = "script", value_parser = part)]
-    scale: f64,
+    scale: Part,
     #[command(flatten)]
     backend: BackendArguments,
 }
 
-fn part(text: &str) -> Result<f64, String> {
-    let allowed = "0.05 to 1";
+/// Part of the size of the window; `None` is found by the time that pictures take.
+#[derive(Clone, Copy, Debug)]
+struct Part(Option<f64>);
+
+fn part(text: &str) -> Result<Part, String> {
+    let allowed = "0.05 to 1, or auto";
+    if text == "auto" {
+        return Ok(Part(None));
+    }
     let part: f64 = text.parse().map_err(|_| format!("not a number; allowed: {allowed}"))?;
-    if (0.05..=1.0).contains(&part) { Ok(part) } else { Err(format!("out of range; allowed: {allowed}")) }
+    if (0.05..=1.0).contains(&part) {
+        Ok(Part(Some(part)))
+    } else {
+        Err(format!("out of range; allowed: {allowed}"))
+    }
 }
 
 impl ViewArguments {
@@ -62,7 +73,7 @@ impl ViewArguments {
             return Err(Failure::new(INPUT, message));
         }
         let device = self.device()?;
-        let scale = self.script.is_some().then_some(self.scale);
+        let scale = self.script.as_ref().and(self.scale.0);
         let app = AppOptions { device, asset_roots: self.asset_root.clone(), scale };
         let document = match &self.input {
             Some(input) => Document::open(input).map_err(|error| document_failure(&error))?,

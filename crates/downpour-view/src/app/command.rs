@@ -4,7 +4,7 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 use glam::DVec3;
 
 use super::dialogs::Dialog;
-use super::{App, Wish};
+use super::{App, Picker, Purpose, Wish};
 use crate::document::DocumentError;
 use crate::key_path::KeyPath;
 use crate::objects::{ObjectId, new_entry, rounded};
@@ -13,10 +13,14 @@ use crate::plain::Plain;
 /// A command without arguments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command {
+    /// Open a weather file or a model.
+    Open,
     /// Save the file.
     Save,
     /// Save as another file.
     SaveAs,
+    /// Take a model or a sky map into the weather.
+    Import,
     /// Take back the last step.
     Undo,
     /// Do again what was taken back.
@@ -57,6 +61,8 @@ pub enum Command {
     Brush,
     /// Fill the screen.
     FullScreen,
+    /// Save the picture of the scene.
+    SavePicture,
     /// Save the window as a picture.
     Screenshot,
     /// Render a still or a clip.
@@ -67,9 +73,11 @@ pub enum Command {
 
 impl Command {
     /// All of them, as the help lists them.
-    pub const ALL: [Self; 25] = [
+    pub const ALL: [Self; 28] = [
+        Self::Open,
         Self::Save,
         Self::SaveAs,
+        Self::Import,
         Self::Undo,
         Self::Redo,
         Self::Duplicate,
@@ -90,6 +98,7 @@ impl Command {
         Self::Snap,
         Self::Brush,
         Self::FullScreen,
+        Self::SavePicture,
         Self::Screenshot,
         Self::Render,
         Self::Help,
@@ -99,8 +108,10 @@ impl Command {
     #[must_use]
     pub fn label(self) -> &'static str {
         match self {
+            Self::Open => "Open…",
             Self::Save => "Save",
             Self::SaveAs => "Save as…",
+            Self::Import => "Import…",
             Self::Undo => "Undo",
             Self::Redo => "Redo",
             Self::Duplicate => "Duplicate",
@@ -121,7 +132,8 @@ impl Command {
             Self::Snap => "Snap to steps",
             Self::Brush => "Paint puddle",
             Self::FullScreen => "Full screen",
-            Self::Screenshot => "Screenshot",
+            Self::SavePicture => "Save picture",
+            Self::Screenshot => "Save screenshot",
             Self::Render => "Render…",
             Self::Help => "Shortcuts",
         }
@@ -131,8 +143,10 @@ impl Command {
     #[must_use]
     pub fn shortcut(self) -> KeyboardShortcut {
         let (modifiers, key) = match self {
+            Self::Open => (Modifiers::COMMAND, Key::O),
             Self::Save => (Modifiers::COMMAND, Key::S),
             Self::SaveAs => (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S),
+            Self::Import => (Modifiers::COMMAND, Key::I),
             Self::Undo => (Modifiers::COMMAND, Key::Z),
             Self::Redo => (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z),
             Self::Duplicate => (Modifiers::COMMAND, Key::D),
@@ -153,7 +167,8 @@ impl Command {
             Self::Snap => (Modifiers::NONE, Key::G),
             Self::Brush => (Modifiers::NONE, Key::B),
             Self::FullScreen => (Modifiers::NONE, Key::F11),
-            Self::Screenshot => (Modifiers::NONE, Key::F12),
+            Self::SavePicture => (Modifiers::NONE, Key::F12),
+            Self::Screenshot => (Modifiers::SHIFT, Key::F12),
             Self::Render => (Modifiers::COMMAND, Key::R),
             Self::Help => (Modifiers::NONE, Key::F1),
         };
@@ -191,10 +206,9 @@ impl App {
     pub fn run(&mut self, command: Command) {
         match command {
             Command::Save => self.save(),
-            Command::SaveAs => {
-                let place = self.document.place();
-                self.dialog = Some(Dialog::SaveAs(place.display().to_string()));
-            }
+            Command::Open => self.pick_for(Purpose::Open),
+            Command::SaveAs => self.pick_for(Purpose::SaveAs),
+            Command::Import => self.pick_for(Purpose::Import),
             Command::Undo => match self.document.undo() {
                 Some(label) => self.say(format!("undone: {label}")),
                 None => self.say("nothing to undo"),
@@ -238,10 +252,16 @@ impl App {
             Command::Snap => self.overlay.snaps = !self.overlay.snaps,
             Command::Brush => self.brush.is_on = !self.brush.is_on,
             Command::FullScreen => self.wishes.push(Wish::FullScreen),
+            Command::SavePicture => self.save_picture(&self.screenshot_place()),
             Command::Screenshot => self.wishes.push(Wish::Screenshot),
             Command::Render => self.dialog = Some(Dialog::render(&self.document, &self.clock)),
             Command::Help => self.dialog = Some(Dialog::Help),
         }
+    }
+
+    fn pick_for(&mut self, purpose: Purpose) {
+        self.message = None;
+        self.dialog = Some(Dialog::Pick(Picker::new(purpose, &self.document)));
     }
 
     /// Saves the file, or asks for its name.

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use egui::{Id, Key, Modal, RichText};
+use egui::{Id, Modal, RichText};
 
-use super::{App, Clock, Command, Wish};
+use super::{App, Clock, Command, Picker, Wish};
 use crate::document::{Document, Recovery};
 use crate::job::{Job, JobSettings};
 use crate::theme::QUIET;
@@ -14,8 +14,8 @@ use crate::theme::QUIET;
 pub enum Dialog {
     /// The list of shortcuts.
     Help,
-    /// Name of the file to save as.
-    SaveAs(String),
+    /// The file to open, to save as or to import.
+    Pick(Picker),
     /// Changes are not saved: at close, or before another file is opened.
     Unsaved {
         /// File to open then; `None` closes the window.
@@ -47,7 +47,7 @@ const OTHER_KEYS: [(&str, &str); 12] = [
     ("Wheel", "nearer, farther"),
     ("W A S D Q E", "fly; with Shift fast, with Alt on level ground"),
     ("Click, Shift click", "select one, or more"),
-    ("Drag a handle", "move, turn, radius, strength"),
+    ("Drag a handle", "move, turn, size, strength"),
     ("Backspace", "delete the selected keyframe"),
     ("X", "ease from the selected keyframe to the next"),
     ("Double click a track", "add a keyframe"),
@@ -85,7 +85,7 @@ impl App {
             ui.set_width(440.0);
             is_open = match &mut dialog {
                 Dialog::Help => help(ui),
-                Dialog::SaveAs(path) => self.save_as(ui, path),
+                Dialog::Pick(picker) => self.choose_file(ui, picker),
                 Dialog::Unsaved { then } => self.unsaved(ui, then.clone()),
                 Dialog::ChangedOnDisk => self.changed(ui),
                 Dialog::Recover(recovery) => self.recover(ui, recovery),
@@ -95,27 +95,6 @@ impl App {
         if is_open && !response.should_close() && self.dialog.is_none() {
             self.dialog = Some(dialog);
         }
-    }
-
-    fn save_as(&mut self, ui: &mut egui::Ui, path: &mut String) -> bool {
-        ui.heading("Save as");
-        let label = ui.label(RichText::new("weather file (.toml), in the folder of its models").color(QUIET));
-        let edit =
-            ui.add(egui::TextEdit::singleline(path).desired_width(f32::INFINITY)).labelled_by(label.id);
-        let enters = edit.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-        let mut is_open = true;
-        ui.horizontal(|ui| {
-            if ui.button("Save").clicked() || enters {
-                let result = self.document.save_as(&PathBuf::from(path.trim()));
-                if self.noted(result).is_some() {
-                    self.say(format!("saved {}", self.document.title()));
-                    is_open = false;
-                }
-            }
-            is_open &= !ui.button("Cancel").clicked();
-        });
-        self.last_error(ui);
-        is_open
     }
 
     fn unsaved(&mut self, ui: &mut egui::Ui, then: Option<PathBuf>) -> bool {
@@ -225,7 +204,7 @@ impl App {
         is_open
     }
 
-    fn last_error(&self, ui: &mut egui::Ui) {
+    pub(super) fn last_error(&self, ui: &mut egui::Ui) {
         if let Some((text, true)) = &self.message {
             ui.label(RichText::new(text).color(ui.visuals().error_fg_color));
         }

@@ -9,7 +9,7 @@ use crate::engine::PictureView;
 use crate::key_path::KeyPath;
 use crate::objects::{DirectionKey, Object, rounded, significant};
 use crate::plain::Plain;
-use crate::wire::across;
+use crate::wire::{across, rectangle_axes};
 
 /// Length of the arrows of a handle, as a part of the picture's height.
 const ARROW: f64 = 0.11;
@@ -20,6 +20,9 @@ const REACH: f32 = 11.0;
 /// Step of lengths and of angles with snap, m and degrees.
 const STEP_M: f64 = 0.5;
 const STEP_DEG: f64 = 15.0;
+
+/// Least edge of a rectangle, m.
+const MIN_EDGE_M: f64 = 0.1;
 
 /// Points by which a strength is dragged until it is multiplied by e.
 const STRENGTH_POINTS: f64 = 120.0;
@@ -33,6 +36,8 @@ pub enum HandleKind {
     Level,
     /// Core radius.
     Radius,
+    /// Width (0) or length (1) of a rectangle.
+    Edge(usize),
     /// Direction.
     Direction,
     /// Strength: up is more.
@@ -101,8 +106,15 @@ impl App {
             places.push((HandleKind::Level, at));
         }
         if self.selected.len() == 1 {
-            if let (Some((_, direction)), Some(_)) = (&object.direction, &object.strength) {
-                places.push((HandleKind::Direction, at + *direction * (arrow * 1.5)));
+            if let Some((_, direction)) = &object.direction
+                && (object.strength.is_some() || object.rectangle.is_some())
+            {
+                places.push((HandleKind::Direction, at + *direction * turn_reach(object, arrow)));
+            }
+            if let Some((_, size, turn)) = &object.rectangle {
+                for (edge, (axis, length)) in rectangle_axes(*turn).into_iter().zip(size).enumerate() {
+                    places.push((HandleKind::Edge(edge), at + axis * (length * 0.5)));
+                }
             }
             if let Some((_, radius)) = &object.radius {
                 let axis = object.direction.as_ref().map_or(DVec3::Y, |(_, direction)| *direction);
@@ -190,6 +202,18 @@ impl App {
                 let radius = (point - at).dot(radius_side(axis, view)).max(0.05);
                 number(path, significant(snapped(radius, STEP_M).max(0.05)))
             }
+            HandleKind::Edge(edge) => {
+                let Some((path, size, turn)) = &drag.object.rectangle else { return Vec::new() };
+                let Some(point) = on_plane(at, DVec3::Y, view.eye, now) else { return Vec::new() };
+                let mut size = *size;
+                let (Some(axis), Some(length)) =
+                    (rectangle_axes(*turn).get(edge).copied(), size.get_mut(edge))
+                else {
+                    return Vec::new();
+                };
+                *length = rounded(snapped(2.0 * (point - at).dot(axis), STEP_M).max(MIN_EDGE_M));
+                vec![(path.clone(), Plain::of_numbers(&size))]
+            }
             HandleKind::Strength => {
                 let Some((path, strength)) = &drag.object.strength else { return Vec::new() };
                 let up = f64::from(drag.begin.y - pointer.y);
@@ -199,8 +223,8 @@ impl App {
             }
             HandleKind::Direction => {
                 let Some((key, old)) = &drag.object.direction else { return Vec::new() };
-                let arrow = view.project(at).map_or(1.0, |(_, depth)| view.height_at(depth) * ARROW * 1.5);
-                let tip = at + *old * arrow;
+                let arrow = view.project(at).map_or(1.0, |(_, depth)| view.height_at(depth) * ARROW);
+                let tip = at + *old * turn_reach(&drag.object, arrow);
                 match key {
                     DirectionKey::Degrees(path) => {
                         let Some(point) = on_plane(at, DVec3::Y, view.eye, now) else { return Vec::new() };
@@ -222,7 +246,8 @@ impl App {
         }
     }
 
-    /// Where a handle has to be dragged to, in points: by meters along an axis, or by a factor of radius or strength.
+    /// Where a handle has to be dragged to, in points: by meters along an axis, by a factor of radius, size or strength, by degrees of a
+    /// direction about the vertical.
     #[must_use]
     pub fn dragged_place(&self, handle: &Handle, by: f64) -> Option<Pos2> {
         let drawn = self.drawn.as_ref()?;
@@ -240,6 +265,16 @@ impl App {
                 let axis = object.direction.as_ref().map_or(DVec3::Y, |(_, direction)| *direction);
                 screen(at + radius_side(axis, view) * (object.radius.as_ref()?.1 * by))
             }
+            HandleKind::Edge(edge) => {
+                let (_, size, turn) = object.rectangle.as_ref()?;
+                screen(at + *rectangle_axes(*turn).get(edge)? * (size.get(edge)? * 0.5 * by))
+            }
+            HandleKind::Direction => {
+                let (DirectionKey::Degrees(_), direction) = object.direction.as_ref()? else { return None };
+                let reach = turn_reach(object, view.height_at(depth) * ARROW);
+                let angle = ops::atan2(direction.z, direction.x) + by.to_radians();
+                screen(at + DVec3::new(ops::cos(angle), 0.0, ops::sin(angle)) * reach)
+            }
             HandleKind::Strength if by > 0.0 => {
                 let up = STRENGTH_POINTS * ops::ln(by);
                 Some(handle.at - egui::vec2(0.0, up as f32))
@@ -254,6 +289,12 @@ fn radius_side(axis: DVec3, view: &PictureView) -> DVec3 {
     axis.cross(view.forward)
         .try_normalize()
         .map_or_else(|| across(axis).0, |side| if side.dot(view.right) < 0.0 { -side } else { side })
+}
+
+/// Distance of the handle of a direction from its object, m: beyond the edge of a rectangle, whose own handle is there. `arrow`: length of
+/// arrows at the object, m.
+fn turn_reach(object: &Object, arrow: f64) -> f64 {
+    object.rectangle.as_ref().map_or(arrow * 1.5, |(_, size, _)| size[0] * 0.5 + arrow)
 }
 
 fn move_all(moved: &[(KeyPath, DVec3)], by: DVec3) -> Vec<(KeyPath, Plain)> {

@@ -169,7 +169,7 @@ impl App {
                     painter.rect_filled(square, 2.0, Color32::WHITE);
                     painter.rect_stroke(square, 2.0, dark, egui::StrokeKind::Outside);
                 }
-                HandleKind::Radius => {
+                HandleKind::Radius | HandleKind::Edge(_) => {
                     painter.circle_filled(handle.at, radius, Color32::WHITE);
                     painter.circle_stroke(handle.at, radius, dark);
                 }
@@ -288,6 +288,19 @@ fn reading(kind: HandleKind, object: &Object) -> String {
         HandleKind::Level => format!("x {:.2} m   z {:.2} m", place(0), place(2)),
         HandleKind::Radius => {
             format!("radius {:.2} m", object.radius.as_ref().map_or(0.0, |(_, radius)| *radius))
+        }
+        HandleKind::Edge(edge) => {
+            let length = object
+                .rectangle
+                .as_ref()
+                .and_then(|(_, size, _)| size.get(edge))
+                .copied()
+                .unwrap_or_default();
+            format!("{} {length:.2} m", if edge == 0 { "width" } else { "length" })
+        }
+        HandleKind::Direction if object.rectangle.is_some() => {
+            let turn = object.rectangle.as_ref().map_or(0.0, |(_, _, turn)| turn.to_degrees());
+            format!("turn {turn:.0}°")
         }
         HandleKind::Direction => object.direction.as_ref().map_or_else(String::new, |(_, d)| {
             let azimuth = ops::atan2(d.z, d.x).to_degrees();

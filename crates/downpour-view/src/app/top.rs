@@ -17,7 +17,15 @@ impl App {
                 self.menu(
                     ui,
                     "File",
-                    &[Command::Save, Command::SaveAs, Command::Render, Command::Screenshot],
+                    &[
+                        Command::Open,
+                        Command::Save,
+                        Command::SaveAs,
+                        Command::Import,
+                        Command::Render,
+                        Command::SavePicture,
+                        Command::Screenshot,
+                    ],
                 );
                 self.menu(
                     ui,

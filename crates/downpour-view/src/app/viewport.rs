@@ -159,7 +159,8 @@ impl App {
     /// Flies with the keys: W, A, S, D, Q and E; walks on level ground with Alt.
     fn flight(&mut self, ui: &egui::Ui, response: &egui::Response, drawn: &Drawn) {
         let is_typing = ui.ctx().egui_wants_keyboard_input();
-        if is_typing || self.dialog.is_some() || !(response.hovered() || self.timeline.flight.is_some()) {
+        let is_meant = response.hovered() || response.has_focus() || self.timeline.flight.is_some();
+        if is_typing || self.dialog.is_some() || !is_meant {
             self.note_flight();
             return;
         }

@@ -54,20 +54,30 @@ impl Machine {
     pub fn draw(&mut self, number: u64, request: &Request) -> Answer {
         let begin = Instant::now();
         let mut drawn = self.try_draw(number, request, begin);
-        if drawn.as_ref().is_err_and(is_lost) {
-            self.renderer = None;
-            self.device = None;
+        let was_lost = drawn.as_ref().is_err_and(is_lost);
+        if was_lost {
+            self.forget();
             drawn = self.try_draw(number, request, begin);
         }
         drawn.map(Arc::new).map_err(|error| {
             // A weather that is refused leaves the renderer as it was; a device that is gone does not.
-            let is_fatal = is_lost(&error);
-            if is_fatal {
-                self.renderer = None;
-                self.device = None;
+            if is_lost(&error) {
+                self.forget();
             }
-            Fault { number, message: error.to_string(), is_fatal }
+            Fault { number, message: error.to_string(), is_fatal: was_lost }
         })
+    }
+
+    /// Forgets the device and what is on it: the next picture opens one.
+    fn forget(&mut self) {
+        self.renderer = None;
+        self.device = None;
+    }
+
+    /// Draws with a device that is open.
+    #[cfg(test)]
+    pub(super) fn set_device(&mut self, device: Device) {
+        self.device = Some(device);
     }
 
     fn try_draw(&mut self, number: u64, request: &Request, begin: Instant) -> Result<Drawn, RendererError> {

@@ -1,4 +1,7 @@
-//! The thread: newest first, faults as answers.
+//! The thread: newest first, faults as answers, devices that are lost.
+
+use downpour::gpu::{Gpu, GpuOptions};
+use downpour::{Backend, Device};
 
 use super::*;
 
@@ -61,4 +64,37 @@ fn faults_are_answers_and_the_next_question_is_drawn() {
     assert!(no_adapter.wait(Duration::from_secs(60)));
     let fault = no_adapter.take().unwrap().unwrap_err();
     assert!(fault.message.contains("no such"), "{}", fault.message);
+}
+
+/// A device that is lost between pictures or under one is opened again, and the picture is that of a device which was not lost.
+#[test]
+fn a_lost_device_is_opened_again() {
+    if std::env::var("DOWNPOUR_GPU_TESTS").is_ok_and(|value| value == "no") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let choice = DeviceChoice { backend: Backend::Gpu, adapter: None };
+    let request = request(RAIN, folder.path(), 1);
+    let whole = Machine::new(choice.clone()).draw(0, &request).unwrap();
+    let lost_after = |submissions: Option<u64>| {
+        Gpu::open_with(&GpuOptions { lose_after_submissions: submissions, ..GpuOptions::default() }).unwrap()
+    };
+    for submissions in [1, 2, 4] {
+        let mut machine = Machine::new(choice.clone());
+        machine.set_device(Device::gpu(lost_after(Some(submissions)), false));
+        let drawn = machine.draw(1, &request).unwrap();
+        assert!(drawn.pixels == whole.pixels, "lost after {submissions} submissions");
+    }
+    let mut machine = Machine::new(choice);
+    let gpu = lost_after(None);
+    machine.set_device(Device::gpu(gpu.clone(), false));
+    assert!(machine.draw(1, &request).unwrap().pixels == whole.pixels);
+    gpu.device().destroy();
+    assert!(machine.draw(2, &request).unwrap().pixels == whole.pixels);
+    // One that does not come back is the end of pictures: the window saves what was made.
+    let adapter = Some("no such".to_owned());
+    let mut machine = Machine::new(DeviceChoice { backend: Backend::Gpu, adapter });
+    machine.set_device(Device::gpu(lost_after(Some(1)), false));
+    let fault = machine.draw(3, &request).unwrap_err();
+    assert!(fault.is_fatal && fault.message.contains("no such"), "{fault:?}");
 }
