@@ -29,7 +29,7 @@ pub use picker::{Picker, Purpose};
 
 use crate::brush::Brush;
 use crate::document::{Document, DocumentError};
-use crate::engine::{DeviceChoice, Drawn, Engine, KEPT_FRAMES, Pace, Request};
+use crate::engine::{DeviceChoice, Drawn, Engine, Pace, Request, Rest};
 use crate::job::Job;
 use crate::key_path::KeyPath;
 use crate::navigation::FreeEye;
@@ -42,9 +42,6 @@ const WATCH_S: f64 = 2.0;
 
 /// Time without a change after which pictures are refined, s.
 const REST_S: f64 = 0.3;
-
-/// Time that a refined picture may take, ms: the next change waits for it.
-const REFINED_MS: f64 = 1500.0;
 
 /// Passes of the scene without rain.
 const PLATE_PASSES: [&str; 3] = ["scene", "skylight", "refine"];
@@ -132,6 +129,8 @@ pub struct App {
     watched_s: f64,
     window: [u32; 2],
     fluid_ms: Option<f64>,
+    /// Time of the newest picture without that of the scene without rain, ms.
+    rain_ms: Option<f64>,
     /// Time of the scene without rain at the size of the window, ms.
     plate_ms: f64,
     /// Rectangle of the picture, in points.
@@ -191,6 +190,7 @@ impl App {
             watched_s: 0.0,
             window: [0; 2],
             fluid_ms: None,
+            rain_ms: None,
             plate_ms: 0.0,
             picture: egui::Rect::ZERO,
         };
@@ -327,7 +327,10 @@ impl App {
     /// Writes the picture, without panels and handles, as a PNG.
     pub fn save_picture(&mut self, path: &Path) {
         match self.drawn.clone() {
-            Some(drawn) => self.save_pixels(path, drawn.size, &drawn.pixels),
+            Some(drawn) => {
+                let pixels: Vec<[u8; 3]> = drawn.pixels.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
+                self.save_pixels(path, drawn.size, &pixels);
+            }
             None => self.complain("there is no picture yet"),
         }
     }
@@ -421,7 +424,8 @@ impl App {
         match self.engine.take() {
             Some(Ok(drawn)) => {
                 let [width, height] = drawn.size.map(|edge| edge as usize);
-                let image = egui::ColorImage::from_rgb([width, height], drawn.pixels.as_flattened());
+                let image =
+                    egui::ColorImage::from_rgba_premultiplied([width, height], drawn.pixels.as_flattened());
                 match &mut self.texture {
                     Some(texture) => texture.set(image, TextureOptions::LINEAR),
                     None => {
@@ -436,7 +440,9 @@ impl App {
                     .filter(|(name, _)| PLATE_PASSES.contains(name))
                     .map(|(_, ms)| ms)
                     .sum();
-                let fluid_ms = if is_still { drawn.frame_ms - plate_ms } else { drawn.frame_ms };
+                let rain_ms = drawn.frame_ms - plate_ms;
+                self.rain_ms = Some(rain_ms);
+                let fluid_ms = if is_still { rain_ms } else { drawn.frame_ms };
                 self.plate_ms = if plate_ms > 1.0 {
                     plate_ms / (self.asked_scale * self.asked_scale)
                 } else {
@@ -486,18 +492,14 @@ impl App {
             fixed.unwrap_or_else(|| self.pace.scale())
         } else {
             // At rest the picture is refined: a larger one, then one of more rays, one step at a time.
-            let Some(drawn) = self.drawn.as_ref().filter(|_| !self.engine.is_busy()) else { return };
-            if fixed.is_some() || now_s - self.changed_s < REST_S || self.repeats >= KEPT_FRAMES {
-                return;
-            }
-            let larger = crate::engine::SCALES.iter().rev().find(|&&scale| scale > self.asked_scale * 1.01);
-            match larger {
-                Some(&scale) if drawn.frame_ms * squared(scale / self.asked_scale) < REFINED_MS => scale,
-                _ => {
-                    self.repeats += 1;
-                    self.asked_scale
-                }
-            }
+            let rest_s = now_s - self.changed_s;
+            let rain_ms = self.rain_ms.filter(|_| !self.engine.is_busy() && self.drawn.is_some());
+            let Some(rain_ms) = rain_ms.filter(|_| fixed.is_none() && rest_s >= REST_S) else { return };
+            let rest =
+                Rest { scale: self.asked_scale, repeats: self.repeats, rain_ms, plate_ms: self.plate_ms };
+            let Some(next) = rest.next(rest_s) else { return };
+            self.repeats = next.repeats;
+            next.scale
         };
         self.asked = Some(asked);
         self.asked_scale = scale;
@@ -576,8 +578,4 @@ impl App {
         };
         self.noted(result);
     }
-}
-
-fn squared(value: f64) -> f64 {
-    value * value
 }

@@ -14,8 +14,8 @@ use downpour::weather::{CameraPose, Weather};
 
 pub use drawn::{Drawn, Histogram, PictureView};
 pub use machine::Machine;
-pub(crate) use machine::{KEPT_FRAMES, open as open_device};
-pub use pace::{Pace, SCALES};
+pub(crate) use machine::open as open_device;
+pub use pace::{Pace, Rest, SCALES};
 
 /// Choice of the device that draws.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -26,7 +26,7 @@
 //! | `quit` | ends the script |
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use egui::{Key, Modifiers, Pos2};
 use glam::DVec3;
@@ -37,6 +37,12 @@ use crate::key_path::KeyPath;
 use crate::objects::{LISTS, ObjectId};
 use crate::offscreen::Offscreen;
 use crate::plain::Plain;
+
+/// Time between two passes of a window on a display.
+const REFRESH: Duration = Duration::from_micros(16_667);
+
+/// Time after which a measurement ends with the pictures that it has.
+const MEASURE_MAX: Duration = Duration::from_secs(120);
 
 /// Step of a script that did not work.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -302,31 +308,43 @@ impl Session {
         Ok(())
     }
 
-    /// Draws pictures of a running clock. Returns what was measured over the second half of them: the first ones find the scale.
+    /// Draws pictures of a running clock, with passes of the window 60 times a second as on a display. Returns what was measured over the
+    /// second half of the pictures: the first ones find the scale.
     fn measure(&mut self, count: usize) -> Result<String, String> {
-        let mut times_ms = Vec::with_capacity(count);
-        for _ in 0..count {
-            let before = self.app.clock_mut().time_s;
-            self.app.clock_mut().time_s = before + 1.0 / 30.0;
-            let begin = Instant::now();
-            self.settle()?;
-            times_ms.push(begin.elapsed().as_secs_f64() * 1.0e3);
+        let begin = Instant::now();
+        let start_s = self.app.clock_mut().time_s;
+        let (mut shown, mut last) = (Vec::with_capacity(count), None);
+        while shown.len() < count {
+            let pass = Instant::now();
+            self.app.clock_mut().time_s = start_s + begin.elapsed().as_secs_f64();
+            self.window.pass(&mut self.app, Vec::new());
+            self.complaint()?;
+            let newest = self.app.drawn().filter(|drawn| last != Some(drawn.number));
+            if let Some(drawn) = newest {
+                last = Some(drawn.number);
+                shown.push((begin.elapsed(), drawn.frame_ms));
+            }
+            if begin.elapsed() > MEASURE_MAX {
+                break;
+            }
+            std::thread::sleep(REFRESH.saturating_sub(pass.elapsed()));
         }
         let drawn = self.app.drawn().ok_or("there is no picture")?;
-        let [width, height] = drawn.size;
-        let (drops, adapter) = (drawn.drops_drawn, &drawn.adapter);
-        let of = self.app.window_size();
+        let late = shown.split_off(shown.len() / 2);
+        let (Some((first, _)), Some((end, _))) = (late.first(), late.last()) else {
+            return Err("too few pictures; allowed: measure N with more".to_owned());
+        };
+        let per_second = (late.len() - 1) as f64 / (*end - *first).as_secs_f64().max(1.0e-6);
+        let mut frames_ms: Vec<f64> = late.iter().map(|(_, ms)| *ms).collect();
+        frames_ms.sort_by(f64::total_cmp);
+        let median = frames_ms.get(frames_ms.len() / 2).copied().unwrap_or_default();
+        let ([width, height], [across, down]) = (drawn.size, self.app.window_size());
         let long = drawn.passes.iter().filter(|(_, ms)| *ms >= 0.05);
         let passes: Vec<String> = long.map(|(name, ms)| format!("{name} {ms:.1} ms")).collect();
-        let mut late = times_ms.split_off(count / 2);
-        late.sort_by(f64::total_cmp);
-        let [median, slow] = [late[late.len() / 2], late[late.len() * 9 / 10]];
         Ok(format!(
-            "{:.1} pictures per second (median {median:.1} ms, nine of ten within {slow:.1} ms) of {width} x {height} \
-             in a window of {} x {}, {drops} drops, {adapter}; {}",
-            1.0e3 / median,
-            of[0],
-            of[1],
+            "{per_second:.1} pictures per second of {width} x {height} in a window of {across} x {down}, {median:.1} ms each, {} drops, {}; {}",
+            drawn.drops_drawn,
+            drawn.adapter,
             passes.join(", "),
         ))
     }

@@ -31,7 +31,8 @@ struct DropsFrame {
     atlas: u32,
     // Multiple of the light that a drop takes out and gives: 1 is what physics gives.
     visibility: f32,
-    unused_a: u32,
+    // Classes, from the first, whose means are made before a drop asks for them.
+    made_classes: u32,
     unused_b: u32,
     unused_c: u32,
 }

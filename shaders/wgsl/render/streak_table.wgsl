@@ -71,8 +71,8 @@ fn main_streak_table(@builtin(workgroup_id) group: vec3u, @builtin(local_invocat
     let entry = kind * STREAK_RAYS * STREAK_RAYS + ray;
     let known = f32(drops_frame.known);
     let is_known = known > 0.0 && streak_made[entry].w == known;
-    // A class without rows is not wanted.
-    let is_wanted = streak_classes[kind].rows > 0u && !is_known;
+    // A class without rows is one that no drop has.
+    let is_wanted = (streak_classes[kind].rows > 0u || kind < drops_frame.made_classes) && !is_known;
     var sum = vec4f(0.0);
     let points = select(0u, STREAK_MEAN_POINTS, is_wanted);
     for (var point = index; point < points; point += STREAK_MEAN_GROUP) {

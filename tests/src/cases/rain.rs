@@ -216,6 +216,8 @@ enum Part {
     /// The capture, each sample of a texel in a dispatch of its own.
     CaptureBySamples,
     Means,
+    /// The means of the first half of the classes, and of those that a drop has: every other one.
+    MadeMeans,
     Chords,
     Profiles,
     Open,
@@ -274,8 +276,8 @@ fn atlas_case(gpu: &Gpu, placement: Placement, shutter_s: f64, pick: StreakPick)
 /// The entries of the streak radiance table that a part is about.
 fn entries(profiles: &StreakProfiles, part: Part) -> Vec<usize> {
     let rays = (STREAK_RAYS * STREAK_RAYS) as usize;
-    if matches!(part, Part::Means) {
-        let wanted = |k: &usize| profiles.classes[k / rays].rows > 0;
+    if matches!(part, Part::Means | Part::MadeMeans) {
+        let wanted = |k: &usize| part == Part::MadeMeans || profiles.classes[k / rays].rows > 0;
         return (0..profiles.classes.len() * rays).filter(wanted).collect();
     }
     let mut all = Vec::new();
@@ -331,6 +333,16 @@ fn masks_case(
     let key = format!("{placement:?} {options:?} {}", masks.has_splashes());
     let prepared = kept(&key, || Prepared::new(placement, options, masks));
     let Prepared { scene, frame, rain, capture, clean } = &*prepared;
+    let made = (part == Part::MadeMeans).then(|| {
+        let mut made = rain.clone();
+        let classes = &mut made.profiles.classes;
+        made.frame.made_classes = classes.len() as u32 / 2;
+        for class in classes.iter_mut().step_by(2) {
+            class.rows = 0;
+        }
+        made
+    });
+    let rain = made.as_ref().unwrap_or(rain);
     let view = SceneView { data: scene, frame };
     let both = [rain.lights(&view, masks).expect("lamps"), rain.streak_lights(&view, masks).expect("lamps")];
     let samples =
@@ -342,7 +354,7 @@ fn masks_case(
     let plate = scenes.plate(gpu, &uploaded, frame, &rains, rain)?;
     let pass = rains.prepare(gpu, &plate.of(&clean_buffer), &rains.upload(masks)?, rain, &both)?;
     let table = || {
-        kept(&format!("{key} table"), || {
+        kept(&format!("{key} table {}", rain.frame.made_classes), || {
             rain.streak_table(masks, capture, &both[1].light(&rain.streak_rows()))
         })
     };
@@ -356,7 +368,7 @@ fn masks_case(
             let finest = 64 * 64;
             Ok(run(64, &capture.texels[..finest], &pass.environment_texels()?[..finest]))
         }
-        Part::Means | Part::Chords | Part::Profiles => {
+        Part::Means | Part::MadeMeans | Part::Chords | Part::Profiles => {
             gpu.submit(&pass.lamps())?;
             gpu.submit(&pass.streaks())?;
             let wanted = entries(&rain.profiles, part);
@@ -877,6 +889,18 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             run: |gpu| {
                 let exposure = exposure(1.0 / 60.0, StreakSamples::Table);
                 rain_case(gpu, LEVEL, RefractionForm::Direction, exposure, Part::Means)
+            },
+        },
+        KernelCase {
+            name: "main_streak_table: classes that no drop has",
+            kernel: &STREAK_TABLE_KERNEL,
+            with: &[],
+            overrides: &[],
+            text: None,
+            tol: TABLED,
+            run: |gpu| {
+                let exposure = exposure(1.0 / 60.0, StreakSamples::Table);
+                rain_case(gpu, LEVEL, RefractionForm::Direction, exposure, Part::MadeMeans)
             },
         },
         KernelCase {

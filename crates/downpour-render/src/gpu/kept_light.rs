@@ -23,24 +23,47 @@ pub struct KeptLight {
     pub(super) medium: MediumOf,
 }
 
+/// Means of a picture that were found before it, and those that it finds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct KeptMeans {
+    /// Their number.
+    pub(super) number: u32,
+    /// Classes, from the first, of which the picture finds the means though no drop may have them: one more in each picture, until all
+    /// are known and none is looked for.
+    pub(super) classes: u32,
+    /// True if all are known before the picture.
+    pub(super) are_all: bool,
+}
+
 impl KeptLight {
-    /// Number of the means of drops in a table: that of the last picture if they are the same, else a new one.
-    pub(super) fn number(
+    /// The means of drops in a table: those of the last picture if they are the same, else new ones.
+    pub(super) fn means(
         last: Option<&Self>,
         drops: &DropsFrame,
         classes: &[StreakPath],
         table: &wgpu::Buffer,
-    ) -> u32 {
+    ) -> KeptMeans {
         static NEXT: AtomicU32 = AtomicU32::new(0);
         // Means have no random numbers.
         let seedless = |frame: &DropsFrame| DropsFrame {
             camera: Camera { seed: 0, ..frame.camera },
             known: 0,
+            made_classes: 0,
             ..*frame
         };
         let same = last.filter(|last| {
             last.table == *table && seedless(&last.drops) == seedless(drops) && last.classes == classes
         });
-        same.map_or_else(|| 1 + NEXT.fetch_add(1, Ordering::Relaxed) % (NUMBERS - 1), |last| last.drops.known)
+        match same {
+            Some(KeptLight { drops: DropsFrame { known, made_classes, .. }, .. }) => KeptMeans {
+                number: *known,
+                classes: made_classes + 1,
+                are_all: *made_classes as usize >= classes.len(),
+            },
+            None => {
+                let number = 1 + NEXT.fetch_add(1, Ordering::Relaxed) % (NUMBERS - 1);
+                KeptMeans { number, classes: 0, are_all: false }
+            }
+        }
     }
 }

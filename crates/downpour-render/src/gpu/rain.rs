@@ -61,6 +61,8 @@ pub struct RainPass<'a> {
     levels: Vec<(wgpu::BindGroup, u32)>,
     project: Option<ProjectPass<'a>>,
     means: (wgpu::BindGroup, u32),
+    /// True if the means are those of the last picture.
+    has_means: bool,
     /// Their rays, and their light.
     profiles: [wgpu::BindGroup; 2],
     groups: JobGroups,
@@ -290,6 +292,7 @@ impl RainPipeline {
             levels,
             project,
             means,
+            has_means: false,
             profiles: [traced, lit],
             groups: drops.groups,
             tiles,
@@ -380,8 +383,10 @@ impl RainPass<'_> {
                 stage.push(of_profiles);
             }
         }
-        // Which classes there are is known after the profiles.
-        stages[after].push(means);
+        if !self.has_means {
+            // Which classes there are is known after the profiles.
+            stages[after].push(means);
+        }
         stages
     }
 
@@ -399,7 +404,10 @@ impl RainPass<'_> {
     /// same environment map and the same lamps, with buffers from the same source, and no picture has since; `None`: there is none.
     pub fn keep_light(&mut self, buffers: &impl BufferSource, last: Option<&KeptLight>) -> KeptLight {
         let (drops, frame) = &mut self.frame;
-        drops.known = KeptLight::number(last, drops, &self.classes, &self.table);
+        let means = KeptLight::means(last, drops, &self.classes, &self.table);
+        drops.known = means.number;
+        drops.made_classes = means.classes.min(self.classes.len() as u32);
+        self.has_means = means.are_all;
         buffers.write(frame, bytemuck::bytes_of(drops));
         if let Some(last) = last {
             self.medium.go_on_from(&last.medium);

@@ -45,8 +45,8 @@ pub struct DropsFrame {
     pub atlas: u32,
     /// Multiple of the light that a drop takes out and gives.
     pub visibility: f32,
-    /// 0.
-    pub unused_a: u32,
+    /// Classes, from the first, whose means are made before a drop asks for them.
+    pub made_classes: u32,
     /// 0.
     pub unused_b: u32,
     /// 0.
@@ -89,7 +89,7 @@ impl DropsFrame {
             glints: options.light.glints,
             atlas: if options.light.form == DropLightForm::Atlas { masks.atlas } else { 0 },
             visibility: options.visibility as f32,
-            unused_a: 0,
+            made_classes: 0,
             unused_b: 0,
             unused_c: 0,
         }

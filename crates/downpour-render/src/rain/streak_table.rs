@@ -76,9 +76,10 @@ impl DropsView<'_> {
     }
 
     /// The mean of a class along a ray.
-    fn mean(&self, class: &StreakPath, ray: u32) -> [f32; 4] {
-        // A class without rows is not wanted.
-        if class.rows == 0 {
+    fn mean(&self, classes: &[StreakPath], kind: u32, ray: u32) -> [f32; 4] {
+        let class = &classes[kind as usize];
+        // A class without rows is one that no drop has.
+        if class.rows == 0 && kind >= self.frame.made_classes {
             return [0.0; 4];
         }
         let last = (STREAK_RAYS - 1) as f32;
@@ -100,7 +101,7 @@ impl DropsView<'_> {
     /// The means of these classes, in parallel; the same bits for any number of threads.
     pub(super) fn streak_means(&self, classes: &[StreakPath]) -> Vec<[f32; 4]> {
         let entries = classes.len() as u32 * STREAK_MEAN_ENTRIES;
-        let entry = |k: u32| self.mean(&classes[(k / STREAK_MEAN_ENTRIES) as usize], k % STREAK_MEAN_ENTRIES);
+        let entry = |k: u32| self.mean(classes, k / STREAK_MEAN_ENTRIES, k % STREAK_MEAN_ENTRIES);
         (0..entries).into_par_iter().map(entry).collect()
     }
 }

@@ -19,8 +19,8 @@ pub struct Drawn {
     pub size: [u32; 2],
     /// Samples along an edge of a pixel.
     pub samples: u32,
-    /// Pixels, sRGB, rows from the top.
-    pub pixels: Vec<[u8; 3]>,
+    /// Red, green, blue of each pixel in sRGB and an alpha of 255, rows from the top.
+    pub pixels: Vec<[u8; 4]>,
     /// The camera that it is seen by.
     pub view: PictureView,
     /// The scene, for rays to its surfaces.
@@ -96,6 +96,9 @@ impl PictureView {
 /// Bins of a histogram.
 pub(super) const BINS: usize = 64;
 
+/// Pixels that are counted, about.
+const COUNTED: usize = 1 << 17;
+
 /// Distribution of the brightness of pixels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Histogram {
@@ -108,18 +111,20 @@ pub struct Histogram {
 }
 
 impl Histogram {
-    /// Histogram of pixels, by their luma of Rec. 709.
+    /// Histogram of pixels, by their luma of Rec. 709: of all of them, or of evenly spread ones of a large picture.
     #[must_use]
-    pub fn of(pixels: &[[u8; 3]]) -> Self {
+    pub fn of(pixels: &[[u8; 4]]) -> Self {
+        // Odd, so that they are not of a few columns.
+        let step = (pixels.len() / COUNTED) | 1;
         let mut counts = [0u32; BINS];
         let (mut white, mut black) = (0u32, 0u32);
-        for &[r, g, b] in pixels {
+        for &[r, g, b, _] in pixels.iter().step_by(step) {
             let luma = (2126 * u32::from(r) + 7152 * u32::from(g) + 722 * u32::from(b)) / 10_000;
             counts[(luma as usize * BINS) / 256] += 1;
             white += u32::from(r.max(g).max(b) == 255);
             black += u32::from(r.max(g).max(b) == 0);
         }
-        let all = (pixels.len() as f32).max(1.0);
+        let all = (pixels.len().div_ceil(step) as f32).max(1.0);
         Self {
             bins: counts.map(|count| count as f32 / all),
             white: white as f32 / all,
@@ -191,9 +196,16 @@ mod tests {
 
     #[test]
     fn the_histogram_counts_every_pixel_once() {
-        let histogram = Histogram::of(&[[0, 0, 0], [255, 255, 255], [128, 128, 128], [128, 128, 128]]);
+        let histogram =
+            Histogram::of(&[[0, 0, 0, 255], [255; 4], [128, 128, 128, 255], [128, 128, 128, 255]]);
         assert_eq!(histogram.bins.iter().sum::<f32>(), 1.0);
         assert_eq!((histogram.bins[0], histogram.bins[32], histogram.bins[63]), (0.25, 0.5, 0.25));
         assert_eq!((histogram.white, histogram.black), (0.25, 0.25));
+        // Of a large picture: the left half is dark.
+        let large: Vec<[u8; 4]> =
+            (0..1920 * 1080).map(|i| [if i % 1920 < 960 { 0 } else { 255 }; 4]).collect();
+        let histogram = Histogram::of(&large);
+        assert!((histogram.bins.iter().sum::<f32>() - 1.0).abs() < 1.0e-5);
+        assert!((histogram.black - 0.5).abs() < 0.01 && (histogram.white - 0.5).abs() < 0.01);
     }
 }

@@ -14,7 +14,7 @@ use super::drawn::{Drawn, Histogram, PictureView};
 use super::{Answer, DeviceChoice, Fault, Request};
 
 /// Pictures over which the scene without its rain is refined: each costs the scene, so that there are few.
-pub(crate) const KEPT_FRAMES: u32 = 4;
+pub(super) const KEPT_FRAMES: u32 = 4;
 
 /// Pixels between those whose rays look for light while the camera moves: rays are most of a frame then.
 const RAY_SPACING: u32 = 2;
@@ -91,7 +91,7 @@ impl Machine {
         let mut drops = None;
         let (size, pixels, drops_drawn, passes) = if request.lists_drops {
             let frame = renderer.frame(request.time_s)?;
-            let pixels = frame.pixels();
+            let pixels = frame.pixels().into_iter().map(|[r, g, b]| [r, g, b, 255]).collect();
             let in_picture = frame.picture.drawn;
             let count = in_picture.len();
             let parts = (frame.picture.size, pixels, count, frame.picture.passes);
@@ -99,8 +99,7 @@ impl Machine {
             parts
         } else {
             let frame = renderer.display(request.time_s)?;
-            let pixels: Vec<[u8; 3]> = frame.pixels.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
-            (frame.size, pixels, frame.drops_drawn, frame.passes)
+            (frame.size, frame.pixels, frame.drops_drawn, frame.passes)
         };
         let frame_scene = Arc::new(renderer.first_scene().clone());
         Ok(Drawn {

@@ -1,4 +1,6 @@
-//! Resolution that keeps the window fluid.
+//! Resolution that keeps the window fluid while something moves, and that grows at rest.
+
+use super::machine::KEPT_FRAMES;
 
 /// Fractions of the size of the window at which pictures are drawn.
 pub const SCALES: [f64; 8] = [1.0, 0.75, 0.5, 0.375, 0.25, 0.1875, 0.125, 0.0625];
@@ -11,6 +13,44 @@ const MAX_PLATE_MS: f64 = 700.0;
 
 /// Pictures in a row that must have time left before the next larger scale is tried.
 const PATIENCE: u32 = 6;
+
+/// Time that a picture at rest may take, ms: the next change waits for it.
+const REFINED_MS: f64 = 1500.0;
+
+/// Part of the rest so far that a picture may take beyond that: who has looked for a minute waits for a few seconds.
+const REFINED_PART: f64 = 0.25;
+
+/// What is known of pictures while nothing changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rest {
+    /// Scale of the newest picture.
+    pub scale: f64,
+    /// Pictures that were drawn at this scale only to refine it.
+    pub repeats: u32,
+    /// Time of that picture without that of the scene without rain, ms.
+    pub rain_ms: f64,
+    /// Time of the scene without rain at the size of the window, ms.
+    pub plate_ms: f64,
+}
+
+impl Rest {
+    /// The picture that is drawn next: a larger one if there is time for it, else one of more rays, until it has all that are kept.
+    /// `None`: none for now. `rest_s`: time without a change, s.
+    #[must_use]
+    pub fn next(&self, rest_s: f64) -> Option<Self> {
+        let larger = SCALES.iter().rev().find(|&&scale| scale > self.scale * 1.01);
+        let time_ms = |scale: f64| {
+            let ratio = scale / self.scale;
+            self.rain_ms * ratio * ratio + self.plate_ms * scale * scale
+        };
+        let most_ms = REFINED_MS.max(rest_s * 1.0e3 * REFINED_PART);
+        match larger {
+            Some(&scale) if time_ms(scale) < most_ms => Some(Self { scale, repeats: 0, ..*self }),
+            _ if self.repeats < KEPT_FRAMES => Some(Self { repeats: self.repeats + 1, ..*self }),
+            _ => None,
+        }
+    }
+}
 
 /// Choice of a scale by the time that pictures took.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,6 +139,34 @@ mod tests {
             pace.note(5.0, 4000.0 * pace.scale() * pace.scale());
         }
         assert_eq!(pace.scale(), 0.375);
+    }
+
+    /// At rest a picture grows to the size of the window on any device, the slower the later, and no change waits for longer than a
+    /// quarter of the rest before it.
+    #[test]
+    fn a_picture_at_rest_grows_to_the_whole_window() {
+        for (rain_ms, plate_ms, at_least_s, at_most_s) in
+            [(5.0, 20.0, 0.0, 0.2), (2500.0, 12_000.0, 45.0, 90.0)]
+        {
+            let mut rest = Rest { scale: 0.25, repeats: 0, rain_ms: rain_ms / 16.0, plate_ms };
+            let mut time_s = 0.0;
+            while rest.scale < 1.0 {
+                let Some(next) = rest.next(time_s) else {
+                    time_s += 0.25;
+                    assert!(time_s < 200.0, "{rest:?}");
+                    continue;
+                };
+                let rain_ms = rain_ms * next.scale * next.scale;
+                let taken_s = (rain_ms + plate_ms * next.scale * next.scale) * 1.0e-3;
+                assert!(next.scale == rest.scale || taken_s <= 1.5_f64.max(0.25 * time_s));
+                time_s += taken_s;
+                rest = Rest { rain_ms, ..next };
+            }
+            assert!((at_least_s..at_most_s).contains(&time_s), "{time_s}");
+            // Then it is refined, and then that is all.
+            let all = (0..10).map_while(|_| rest.next(time_s).inspect(|next| rest = *next)).count();
+            assert_eq!(all, KEPT_FRAMES as usize);
+        }
     }
 
     #[test]
