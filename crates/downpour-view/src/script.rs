@@ -312,13 +312,11 @@ impl Session {
     /// second half of the pictures: the first ones find the scale.
     fn measure(&mut self, count: usize) -> Result<String, String> {
         let begin = Instant::now();
-        let start_s = self.app.clock_mut().time_s;
+        let is_playing = std::mem::replace(&mut self.app.clock_mut().is_playing, true);
         let (mut shown, mut last) = (Vec::with_capacity(count), None);
         while shown.len() < count {
             let pass = Instant::now();
-            self.app.clock_mut().time_s = start_s + begin.elapsed().as_secs_f64();
             self.window.pass(&mut self.app, Vec::new());
-            self.complaint()?;
             let newest = self.app.drawn().filter(|drawn| last != Some(drawn.number));
             if let Some(drawn) = newest {
                 last = Some(drawn.number);
@@ -329,6 +327,8 @@ impl Session {
             }
             std::thread::sleep(REFRESH.saturating_sub(pass.elapsed()));
         }
+        self.app.clock_mut().is_playing = is_playing;
+        self.complaint()?;
         let drawn = self.app.drawn().ok_or("there is no picture")?;
         let late = shown.split_off(shown.len() / 2);
         let (Some((first, _)), Some((end, _))) = (late.first(), late.last()) else {
