@@ -448,7 +448,8 @@ impl App {
                 } else {
                     self.plate_ms
                 };
-                if self.asked_scale <= self.pace.scale() && self.drawn.is_some() {
+                let counts = self.drawn.is_some() && !drawn.is_in_flash;
+                if self.asked_scale <= self.pace.scale() && counts {
                     let scale = self.pace.scale();
                     self.pace.note(fluid_ms, self.plate_ms * scale * scale);
                     self.fluid_ms = Some(fluid_ms);

@@ -33,6 +33,8 @@ pub struct Drawn {
     pub passes: Vec<(&'static str, f64)>,
     /// Time from the question to the picture, ms.
     pub frame_ms: f64,
+    /// True if a flash of lightning is in it: such a picture is drawn several times and says nothing of the next.
+    pub is_in_flash: bool,
     /// Adapter that drew it.
     pub adapter: String,
     /// Brightness of its pixels.

@@ -115,6 +115,7 @@ impl Machine {
             drops_drawn,
             drops,
             passes,
+            is_in_flash: renderer.is_in_flash(request.time_s),
             frame_ms: begin.elapsed().as_secs_f64() * 1.0e3,
             adapter: renderer.computer().adapter.clone(),
         })

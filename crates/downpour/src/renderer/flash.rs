@@ -13,9 +13,10 @@ use super::drops::Drops;
 use super::{Progress, Renderer, RendererError};
 
 impl Renderer {
-    /// True if a flash shines while the shutter is open.
-    #[cfg(feature = "wgpu")]
-    pub(super) fn is_in_flash(&self, time_s: f64) -> bool {
+    /// True if a flash of lightning shines while the shutter of a frame is open: such a frame is drawn several times, each in the light of
+    /// its part of the exposure.
+    #[must_use]
+    pub fn is_in_flash(&self, time_s: f64) -> bool {
         !self.flash_parts(time_s).is_empty()
     }
 
