@@ -43,9 +43,6 @@ const WATCH_S: f64 = 2.0;
 /// Time without a change after which pictures are refined, s.
 const REST_S: f64 = 0.3;
 
-/// Passes of the scene without rain.
-const PLATE_PASSES: [&str; 3] = ["scene", "skylight", "refine"];
-
 /// Options of an application.
 #[derive(Clone, Debug, Default)]
 pub struct AppOptions {
@@ -129,8 +126,6 @@ pub struct App {
     watched_s: f64,
     window: [u32; 2],
     fluid_ms: Option<f64>,
-    /// Time of the newest picture without that of the scene without rain, ms.
-    rain_ms: Option<f64>,
     /// Time of the scene without rain at the size of the window, ms.
     plate_ms: f64,
     /// Rectangle of the picture, in points.
@@ -190,7 +185,6 @@ impl App {
             watched_s: 0.0,
             window: [0; 2],
             fluid_ms: None,
-            rain_ms: None,
             plate_ms: 0.0,
             picture: egui::Rect::ZERO,
         };
@@ -335,12 +329,9 @@ impl App {
         }
     }
 
-    /// Writes pixels, rows from the top, as a PNG.
-    pub fn save_pixels(&mut self, path: &Path, [width, height]: [u32; 2], pixels: &[[u8; 3]]) {
-        let written = downpour::render::file::write_png(width, height, pixels)
-            .map_err(|error| error.to_string())
-            .and_then(|png| crate::document::write_whole(path, &png).map_err(|error| error.to_string()));
-        match written {
+    /// Writes pixels, rows from the top, as a PNG, and says so.
+    pub fn save_pixels(&mut self, path: &Path, size: [u32; 2], pixels: &[[u8; 3]]) {
+        match crate::document::write_picture(path, size, pixels) {
             Ok(()) => self.say(format!("wrote {}", path.display())),
             Err(error) => self.complain(error),
         }
@@ -361,6 +352,7 @@ impl App {
     pub fn show(&mut self, document: Document) {
         self.document.discard_recovery();
         self.document = document;
+        self.is_discarded = false;
         self.selected.clear();
         self.hidden.clear();
         self.eye = None;
@@ -434,15 +426,8 @@ impl App {
                 }
                 // Where nothing moves, the scene without rain is made and refined once and then kept: it is no part of the pace.
                 let is_still = self.drawn.as_ref().is_none_or(|before| before.view == drawn.view);
-                let plate_ms: f64 = drawn
-                    .passes
-                    .iter()
-                    .filter(|(name, _)| PLATE_PASSES.contains(name))
-                    .map(|(_, ms)| ms)
-                    .sum();
-                let rain_ms = drawn.frame_ms - plate_ms;
-                self.rain_ms = Some(rain_ms);
-                let fluid_ms = if is_still { rain_ms } else { drawn.frame_ms };
+                let plate_ms = drawn.plate_ms();
+                let fluid_ms = if is_still { drawn.rain_ms() } else { drawn.frame_ms };
                 self.plate_ms = if plate_ms > 1.0 {
                     plate_ms / (self.asked_scale * self.asked_scale)
                 } else {
@@ -494,10 +479,12 @@ impl App {
         } else {
             // At rest the picture is refined: a larger one, then one of more rays, one step at a time.
             let rest_s = now_s - self.changed_s;
-            let rain_ms = self.rain_ms.filter(|_| !self.engine.is_busy() && self.drawn.is_some());
-            let Some(rain_ms) = rain_ms.filter(|_| fixed.is_none() && rest_s >= REST_S) else { return };
-            let rest =
-                Rest { scale: self.asked_scale, repeats: self.repeats, rain_ms, plate_ms: self.plate_ms };
+            let Some(drawn) = self.drawn.as_ref().filter(|_| !self.engine.is_busy()) else { return };
+            if fixed.is_some() || rest_s < REST_S {
+                return;
+            }
+            let (scale, repeats, plate_ms) = (self.asked_scale, self.repeats, self.plate_ms);
+            let rest = Rest { scale, repeats, rain_ms: drawn.rain_ms(), plate_ms };
             let Some(next) = rest.next(rest_s) else { return };
             self.repeats = next.repeats;
             next.scale

@@ -13,7 +13,7 @@ use toml_edit::DocumentMut;
 
 pub use error::DocumentError;
 pub use file::Recovery;
-pub(crate) use file::write_whole;
+pub(crate) use file::{write_picture, write_whole};
 use history::{History, State};
 
 use crate::key_path::KeyPath;

@@ -5,7 +5,7 @@ use std::path::Path;
 use egui::{Event, Modifiers, PointerButton, Pos2, Rect, Vec2};
 
 use crate::app::{App, Wish};
-use crate::document::write_whole;
+use crate::document::write_picture;
 use crate::raster::Raster;
 use crate::theme;
 
@@ -113,20 +113,11 @@ impl Offscreen {
         self.raster.draw(&self.primitives, self.size.map(|edge| edge as usize), 1.0, theme::PANEL)
     }
 
-    /// Size of the window, in pixels.
-    #[must_use]
-    pub fn size(&self) -> [u32; 2] {
-        self.size
-    }
-
     /// Writes the window as a PNG.
     ///
     /// # Errors
     /// The message of the encoder or of the system.
     pub fn screenshot(&self, path: &Path) -> Result<(), String> {
-        let [width, height] = self.size;
-        let png =
-            downpour::render::file::write_png(width, height, &self.pixels()).map_err(|e| e.to_string())?;
-        write_whole(path, &png).map_err(|error| error.to_string())
+        write_picture(path, self.size, &self.pixels())
     }
 }

@@ -262,10 +262,8 @@ impl Session {
                 }
             }
             "screenshot" => {
-                self.window.rest(&mut self.app);
-                self.settle()?;
                 let path = path(words, 0)?;
-                self.window.screenshot(&path)?;
+                self.screenshot(&path)?;
                 told(&format!("wrote {}", path.display()));
             }
             "drops" => {
@@ -291,18 +289,20 @@ impl Session {
         Ok(())
     }
 
+    /// Writes the window once its picture shows the present state.
+    fn screenshot(&mut self, path: &Path) -> Result<(), String> {
+        self.window.rest(&mut self.app);
+        self.settle()?;
+        self.window.screenshot(path)
+    }
+
     /// Does what the application wishes of the window around it.
     fn grant(&mut self, wishes: Vec<Wish>) -> Result<(), String> {
         for wish in wishes {
             match wish {
                 Wish::Close => self.close()?,
                 Wish::FullScreen => return Err("without a display there is no screen to fill".to_owned()),
-                Wish::Screenshot => {
-                    self.window.rest(&mut self.app);
-                    self.settle()?;
-                    let place = self.app.screenshot_place();
-                    self.app.save_pixels(&place, self.window.size(), &self.window.pixels());
-                }
+                Wish::Screenshot => self.screenshot(&self.app.screenshot_place())?,
             }
         }
         Ok(())

@@ -242,6 +242,12 @@ fn exposure(shutter_s: f64, samples: StreakSamples) -> Exposure {
     }
 }
 
+/// Means of classes of drops, during a 60th of a second.
+fn means_case(gpu: &Gpu, part: Part) -> Result<Run, GpuError> {
+    let exposure = exposure(1.0 / 60.0, StreakSamples::Table);
+    rain_case(gpu, LEVEL, RefractionForm::Direction, exposure, part)
+}
+
 fn rain_case(
     gpu: &Gpu,
     placement: Placement,
@@ -753,6 +759,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         tol: DRAWN,
         run,
     };
+    let means = |name, run| KernelCase { kernel: &STREAK_TABLE_KERNEL, tol: TABLED, ..drops(name, run) };
     let medium = |name, kernel, run| KernelCase {
         name,
         kernel,
@@ -879,30 +886,8 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             let options = RainOptions { light, ..RainOptions::default() };
             masks_case(gpu, LEVEL, options, &DropMasks::trace(1.333).expect("masks"), Part::Drops)
         }),
-        KernelCase {
-            name: "main_streak_table: all classes",
-            kernel: &STREAK_TABLE_KERNEL,
-            with: &[],
-            overrides: &[],
-            text: None,
-            tol: TABLED,
-            run: |gpu| {
-                let exposure = exposure(1.0 / 60.0, StreakSamples::Table);
-                rain_case(gpu, LEVEL, RefractionForm::Direction, exposure, Part::Means)
-            },
-        },
-        KernelCase {
-            name: "main_streak_table: classes that no drop has",
-            kernel: &STREAK_TABLE_KERNEL,
-            with: &[],
-            overrides: &[],
-            text: None,
-            tol: TABLED,
-            run: |gpu| {
-                let exposure = exposure(1.0 / 60.0, StreakSamples::Table);
-                rain_case(gpu, LEVEL, RefractionForm::Direction, exposure, Part::MadeMeans)
-            },
-        },
+        means("main_streak_table: all classes", |gpu| means_case(gpu, Part::Means)),
+        means("main_streak_table: classes that no drop has", |gpu| means_case(gpu, Part::MadeMeans)),
         KernelCase {
             name: "main_streak_rays: outlines and chords",
             kernel: &STREAK_RAYS_KERNEL,

@@ -13,16 +13,6 @@ use crate::rain::{DropsFrame, StreakPath};
 /// Numbers under which means are kept are below this: exact as f32.
 const NUMBERS: u32 = 1 << 24;
 
-/// What the kept light of a picture was found from, and where it is.
-#[derive(Clone, Debug)]
-pub struct KeptLight {
-    /// The frame of its drops, with the number of its means.
-    pub(super) drops: DropsFrame,
-    pub(super) classes: Vec<StreakPath>,
-    pub(super) table: wgpu::Buffer,
-    pub(super) medium: MediumOf,
-}
-
 /// Means of a picture that were found before it, and those that it finds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct KeptMeans {
@@ -33,6 +23,16 @@ pub(super) struct KeptMeans {
     pub(super) classes: u32,
     /// True if all are known before the picture.
     pub(super) are_all: bool,
+}
+
+/// What the kept light of a picture was found from, and where it is.
+#[derive(Clone, Debug)]
+pub struct KeptLight {
+    /// The frame of its drops, with the number of its means.
+    pub(super) drops: DropsFrame,
+    pub(super) classes: Vec<StreakPath>,
+    pub(super) table: wgpu::Buffer,
+    pub(super) medium: MediumOf,
 }
 
 impl KeptLight {
@@ -55,11 +55,14 @@ impl KeptLight {
             last.table == *table && seedless(&last.drops) == seedless(drops) && last.classes == classes
         });
         match same {
-            Some(KeptLight { drops: DropsFrame { known, made_classes, .. }, .. }) => KeptMeans {
-                number: *known,
-                classes: made_classes + 1,
-                are_all: *made_classes as usize >= classes.len(),
-            },
+            Some(KeptLight { drops: DropsFrame { known, made_classes, .. }, .. }) => {
+                let all = classes.len() as u32;
+                KeptMeans {
+                    number: *known,
+                    classes: (made_classes + 1).min(all),
+                    are_all: *made_classes == all,
+                }
+            }
             None => {
                 let number = 1 + NEXT.fetch_add(1, Ordering::Relaxed) % (NUMBERS - 1);
                 KeptMeans { number, classes: 0, are_all: false }

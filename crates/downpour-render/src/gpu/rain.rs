@@ -406,7 +406,7 @@ impl RainPass<'_> {
         let (drops, frame) = &mut self.frame;
         let means = KeptLight::means(last, drops, &self.classes, &self.table);
         drops.known = means.number;
-        drops.made_classes = means.classes.min(self.classes.len() as u32);
+        drops.made_classes = means.classes;
         self.has_means = means.are_all;
         buffers.write(frame, bytemuck::bytes_of(drops));
         if let Some(last) = last {

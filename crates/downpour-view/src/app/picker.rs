@@ -209,15 +209,14 @@ impl App {
             return true;
         }
         match picker.purpose {
-            Purpose::Open => {
+            Purpose::Open | Purpose::Import => {
                 self.message = None;
-                self.open(&path);
+                if picker.purpose == Purpose::Open {
+                    self.open(&path);
+                } else {
+                    self.drop_file(&path);
+                }
                 // Refused: the message says why, in the dialog, where another name can be given.
-                matches!(self.message, Some((_, true)))
-            }
-            Purpose::Import => {
-                self.message = None;
-                self.drop_file(&path);
                 matches!(self.message, Some((_, true)))
             }
             Purpose::SaveAs => {

@@ -238,6 +238,16 @@ fn read(path: &Path) -> Result<Vec<u8>, DocumentError> {
     fs::read(path).map_err(|error| failed(path, &error))
 }
 
+/// Writes pixels, rows from the top, as a PNG in one piece.
+pub(crate) fn write_picture(
+    path: &Path,
+    [width, height]: [u32; 2],
+    pixels: &[[u8; 3]],
+) -> Result<(), String> {
+    let png = downpour::render::file::write_png(width, height, pixels).map_err(|error| error.to_string())?;
+    write_whole(path, &png).map_err(|error| error.to_string())
+}
+
 /// Writes a file: all of its bytes, or nothing.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), DocumentError> {
     replace_file(path, bytes).map_err(|error| failed(path, &error))

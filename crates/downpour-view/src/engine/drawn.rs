@@ -135,7 +135,22 @@ impl Histogram {
     }
 }
 
+/// Passes of the scene without rain.
+const PLATE_PASSES: [&str; 3] = ["scene", "skylight", "refine"];
+
 impl Drawn {
+    /// Time of the scene without rain, ms.
+    #[must_use]
+    pub fn plate_ms(&self) -> f64 {
+        self.passes.iter().filter(|(name, _)| PLATE_PASSES.contains(name)).map(|(_, ms)| ms).sum()
+    }
+
+    /// Time of everything else, ms.
+    #[must_use]
+    pub fn rain_ms(&self) -> f64 {
+        self.frame_ms - self.plate_ms()
+    }
+
     /// The nearest surface along a ray from the eye, m from it; `None` for the sky.
     #[must_use]
     pub fn distance(&self, direction: DVec3) -> Option<f64> {
