@@ -322,7 +322,8 @@ impl App {
     pub fn save_picture(&mut self, path: &Path) {
         match self.drawn.clone() {
             Some(drawn) => {
-                let pixels: Vec<[u8; 3]> = drawn.pixels.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
+                let pixels: Vec<[u8; 3]> =
+                    drawn.image.pixels.iter().map(|it| [it.r(), it.g(), it.b()]).collect();
                 self.save_pixels(path, drawn.size, &pixels);
             }
             None => self.complain("there is no picture yet"),
@@ -415,9 +416,7 @@ impl App {
     fn take_answer(&mut self, context: &egui::Context) {
         match self.engine.take() {
             Some(Ok(drawn)) => {
-                let [width, height] = drawn.size.map(|edge| edge as usize);
-                let image =
-                    egui::ColorImage::from_rgba_premultiplied([width, height], drawn.pixels.as_flattened());
+                let image = Arc::clone(&drawn.image);
                 match &mut self.texture {
                     Some(texture) => texture.set(image, TextureOptions::LINEAR),
                     None => {

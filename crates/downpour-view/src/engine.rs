@@ -7,14 +7,14 @@ mod pace;
 use std::path::PathBuf;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use downpour::Backend;
 use downpour::weather::{CameraPose, Weather};
 
 pub use drawn::{Drawn, Histogram, PictureView};
-pub use machine::Machine;
 pub(crate) use machine::open as open_device;
+pub use machine::{Begun, Machine};
 pub use pace::{Pace, Rest, SCALES};
 
 /// Choice of the device that draws.
@@ -49,6 +49,18 @@ pub struct Request {
     pub meters: bool,
     /// True if the drops are listed.
     pub lists_drops: bool,
+}
+
+impl Request {
+    /// True if it asks for the same as one before it, at another time.
+    fn follows(&self, before: &Self) -> bool {
+        let of = |it: &Self| (it.revision, it.eye, it.size, it.samples, it.lists_drops);
+        Arc::ptr_eq(&self.weather, &before.weather)
+            && of(self) == of(before)
+            && self.place == before.place
+            && self.asset_roots == before.asset_roots
+            && !self.meters
+    }
 }
 
 /// Reason why there is no picture.
@@ -88,7 +100,7 @@ impl std::fmt::Debug for Shared {
 #[derive(Default)]
 struct State {
     /// The newest question, with its number.
-    next: Option<(u64, Request)>,
+    next: Option<Asked>,
     /// Number of the last question.
     asked: u64,
     /// Number of the last question that was answered.
@@ -168,27 +180,124 @@ impl Drop for Engine {
     }
 }
 
+/// Time of a picture up to which the next one is begun before it is at hand, ms: with longer ones it would show a time long gone.
+const MAX_AHEAD_MS: f64 = 50.0;
+
+/// Part of that time until a picture is on its way, up to which something is gained.
+const MAX_BEGIN: f64 = 0.5;
+
+/// Part of the time of the last picture for which the next question is waited for, before the thread waits for the device.
+const PATIENCE: f64 = 0.75;
+
+/// A question with its number.
+type Asked = (u64, Request);
+
+/// Pictures that the thread has under way.
+struct Worker {
+    machine: Machine,
+    /// The picture under way, and whether it was begun before the one before it was at hand.
+    begun: Option<(Begun, bool)>,
+    /// Time of the last picture until it was on its way, and until it was at hand, ms.
+    last_ms: Option<[f64; 2]>,
+    /// Time since which the device has had nothing but the picture under way.
+    since: Instant,
+}
+
+impl Worker {
+    fn new(machine: Machine) -> Self {
+        Self { machine, begun: None, last_ms: None, since: Instant::now() }
+    }
+
+    /// True if it is worth while to begin a picture before the one under way is at hand.
+    fn goes_ahead(&self) -> bool {
+        // A driver that draws on the CPU has drawn most of a picture when it is on its way.
+        self.last_ms.is_some_and(|[begin, all]| all <= MAX_AHEAD_MS && begin <= MAX_BEGIN * all)
+    }
+
+    /// Time for which the next question is waited for; `None` is forever.
+    fn patience(&self) -> Option<Duration> {
+        self.begun.as_ref()?;
+        let [_, all] = self.last_ms.filter(|_| self.goes_ahead()).unwrap_or_default();
+        Some(Duration::from_secs_f64(1.0e-3 * PATIENCE * all).saturating_sub(self.since.elapsed()))
+    }
+
+    /// True if a question may be begun before the picture under way is at hand: the device has no pause then. Only the clock goes on in
+    /// such a question: what a hand has changed is to be in the next picture, and not in the one after.
+    fn may_go_ahead(&self, next: &Request) -> bool {
+        self.goes_ahead() && self.begun.as_ref().is_some_and(|(begun, _)| next.follows(begun.request()))
+    }
+
+    /// True if the picture under way was begun ahead and a hand has changed something since: it is not shown.
+    fn is_outdated(&self, next: &Request) -> bool {
+        self.begun.as_ref().is_some_and(|(begun, is_ahead)| *is_ahead && !next.follows(begun.request()))
+    }
+
+    /// Takes one step with the newest question, which is begun or left to the next step. Returns the question if it was left, and an
+    /// answer if there is one.
+    fn step(&mut self, next: Option<Asked>) -> (Option<Asked>, Option<(u64, Answer)>) {
+        let Some((number, request)) = next else {
+            return (None, self.finish());
+        };
+        if self.is_outdated(&request) {
+            self.begun = None;
+        }
+        if self.begun.is_none() {
+            self.since = Instant::now();
+            self.begun = Some((self.machine.begin(number, request), false));
+            return (None, None);
+        }
+        if !self.may_go_ahead(&request) {
+            return (Some((number, request)), self.finish());
+        }
+        let ahead = self.machine.begin(number, request);
+        let answer = self.finish();
+        self.begun = Some((ahead, true));
+        (None, answer)
+    }
+
+    /// Waits for the picture under way, if there is one.
+    fn finish(&mut self) -> Option<(u64, Answer)> {
+        let (begun, _) = self.begun.take()?;
+        let (number, begin_ms) = (begun.number(), begun.begin_ms());
+        let answer = self.machine.finish(begun);
+        self.since = Instant::now();
+        self.last_ms = answer.as_ref().ok().map(|drawn| [begin_ms, drawn.frame_ms]);
+        Some((number, answer))
+    }
+}
+
 /// Work of the thread.
-fn serve(shared: &Shared, mut machine: Machine) {
+fn serve(shared: &Shared, machine: Machine) {
+    let mut worker = Worker::new(machine);
     loop {
         let mut state = shared.lock();
-        let (number, request) = loop {
-            if state.is_ended {
-                return;
-            }
-            match state.next.take() {
-                Some(next) => break next,
-                None => state = shared.asked.wait(state).unwrap_or_else(PoisonError::into_inner),
-            }
-        };
+        while state.next.is_none() && !state.is_ended {
+            let asked = &shared.asked;
+            state = match worker.patience() {
+                None => asked.wait(state).unwrap_or_else(PoisonError::into_inner),
+                Some(Duration::ZERO) => break,
+                Some(time) => asked.wait_timeout(state, time).unwrap_or_else(PoisonError::into_inner).0,
+            };
+        }
+        if state.is_ended {
+            return;
+        }
+        let next = state.next.take();
         drop(state);
-        let drawing = std::panic::AssertUnwindSafe(|| machine.draw(number, &request));
-        let answer = std::panic::catch_unwind(drawing).unwrap_or_else(|_| {
-            machine = Machine::new(machine.choice().clone());
+        let newest = next.as_ref().map(|(number, _)| *number);
+        let step = std::panic::AssertUnwindSafe(|| worker.step(next));
+        let (left, answer) = std::panic::catch_unwind(step).unwrap_or_else(|_| {
+            let under_way = worker.begun.take().map(|(begun, _)| begun.number());
+            worker.machine = Machine::new(worker.machine.choice().clone());
             let message = "internal error while drawing, please report it".to_owned();
-            Err(Fault { number, message, is_fatal: false })
+            let answer = |number| (number, Err(Fault { number, message, is_fatal: false }));
+            (None, newest.or(under_way).map(answer))
         });
         let mut state = shared.lock();
+        if state.next.is_none() {
+            state.next = left;
+        }
+        let Some((number, answer)) = answer else { continue };
         state.answered = number;
         state.answer = Some(answer);
         if let Some(wake) = &state.wake {

@@ -9,7 +9,7 @@ use egui::{Color32, ColorImage, ImageData, Pos2, TextureId, TexturesDelta};
 /// Textures, as egui has sent them.
 #[derive(Debug, Default)]
 pub struct Raster {
-    textures: HashMap<TextureId, ColorImage>,
+    textures: HashMap<TextureId, Arc<ColorImage>>,
 }
 
 impl Raster {
@@ -19,9 +19,9 @@ impl Raster {
             for change in changes {
                 let ImageData::Color(image) = &change.image;
                 match (change.pos, self.textures.get_mut(&id)) {
-                    (Some([left, top]), Some(texture)) => patch(texture, image, left, top),
+                    (Some([left, top]), Some(texture)) => patch(Arc::make_mut(texture), image, left, top),
                     _ => {
-                        self.textures.insert(id, ColorImage::clone(&Arc::clone(image)));
+                        self.textures.insert(id, Arc::clone(image));
                     }
                 }
             }

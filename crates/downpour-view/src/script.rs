@@ -342,7 +342,8 @@ impl Session {
         let long = drawn.passes.iter().filter(|(_, ms)| *ms >= 0.05);
         let passes: Vec<String> = long.map(|(name, ms)| format!("{name} {ms:.1} ms")).collect();
         Ok(format!(
-            "{per_second:.1} pictures per second of {width} x {height} in a window of {across} x {down}, {median:.1} ms each, {} drops, {}; {}",
+            "{per_second:.1} pictures per second of {width} x {height} in a window of {across} x {down}, {median:.1} ms each ({:.1} ms until it is on its way), {} drops, {}; {}",
+            drawn.begin_ms,
             drawn.drops_drawn,
             drawn.adapter,
             passes.join(", "),

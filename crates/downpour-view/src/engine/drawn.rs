@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use downpour::sim::field::VisibleDrops;
 use downpour::trace::frame_scene::FrameScene;
+use egui::ColorImage;
 use glam::{DVec2, DVec3};
 
 /// A picture.
@@ -19,8 +20,8 @@ pub struct Drawn {
     pub size: [u32; 2],
     /// Samples along an edge of a pixel.
     pub samples: u32,
-    /// Red, green, blue of each pixel in sRGB and an alpha of 255, rows from the top.
-    pub pixels: Vec<[u8; 4]>,
+    /// Its pixels in sRGB, opaque, rows from the top.
+    pub image: Arc<ColorImage>,
     /// The camera that it is seen by.
     pub view: PictureView,
     /// The scene, for rays to its surfaces.
@@ -31,7 +32,9 @@ pub struct Drawn {
     pub drops: Option<(VisibleDrops, Vec<u32>)>,
     /// Time of each pass, ms.
     pub passes: Vec<(&'static str, f64)>,
-    /// Time from the question to the picture, ms.
+    /// Time until it was on its way, ms.
+    pub begin_ms: f64,
+    /// Time that it took, ms: from the question, or from the picture before if that was under way, to the picture.
     pub frame_ms: f64,
     /// True if a flash of lightning is in it: such a picture is drawn several times and says nothing of the next.
     pub is_in_flash: bool,

@@ -6,8 +6,10 @@ use std::time::Instant;
 
 use downpour::gpu::{AdapterChoice, Gpu, GpuError};
 use downpour::scene::Budget;
+use downpour::trace::frame_scene::FrameScene;
 use downpour::weather::{CameraPath, Roots, Weather, load};
-use downpour::{Backend, Device, Renderer, RendererError, RendererOptions};
+use downpour::{Backend, Device, PendingDisplay, PendingFrame, Renderer, RendererError, RendererOptions};
+use egui::ColorImage;
 use glam::DVec3;
 
 use super::drawn::{Drawn, Histogram, PictureView};
@@ -25,6 +27,10 @@ pub struct Machine {
     choice: DeviceChoice,
     device: Option<Device>,
     renderer: Option<Ready>,
+    /// Devices that were forgotten.
+    lost: u32,
+    /// Time at which the last picture was at hand.
+    last_done: Option<Instant>,
 }
 
 #[derive(Debug)]
@@ -34,11 +40,61 @@ struct Ready {
     place: std::path::PathBuf,
 }
 
+/// A question whose picture is under way.
+#[derive(Debug)]
+pub struct Begun {
+    number: u64,
+    request: Request,
+    begin: Instant,
+    /// Time until it was on its way, ms.
+    begin_ms: f64,
+    /// Devices that had been forgotten before.
+    lost: u32,
+    picture: Result<Pending, RendererError>,
+}
+
+/// A picture under way.
+#[derive(Debug)]
+struct Pending {
+    pixels: PendingPixels,
+    view: PictureView,
+    frame_scene: Arc<FrameScene>,
+    is_in_flash: bool,
+    adapter: String,
+}
+
+#[derive(Debug)]
+enum PendingPixels {
+    Display(PendingDisplay),
+    /// With the list of its drops.
+    Listed(Box<PendingFrame>),
+}
+
+impl Begun {
+    /// The question.
+    #[must_use]
+    pub fn request(&self) -> &Request {
+        &self.request
+    }
+
+    /// The number of the question.
+    #[must_use]
+    pub fn number(&self) -> u64 {
+        self.number
+    }
+
+    /// Time until it was on its way, ms.
+    #[must_use]
+    pub fn begin_ms(&self) -> f64 {
+        self.begin_ms
+    }
+}
+
 impl Machine {
     /// A machine that has drawn nothing yet.
     #[must_use]
     pub fn new(choice: DeviceChoice) -> Self {
-        Self { choice, device: None, renderer: None }
+        Self { choice, device: None, renderer: None, lost: 0, last_done: None }
     }
 
     /// Choice of its device.
@@ -51,14 +107,37 @@ impl Machine {
     ///
     /// # Errors
     /// [`Fault`].
-    pub fn draw(&mut self, number: u64, request: &Request) -> Answer {
-        let begin = Instant::now();
-        let mut drawn = self.try_draw(number, request, begin);
+    pub fn draw(&mut self, number: u64, request: Request) -> Answer {
+        let begun = self.begin(number, request);
+        self.finish(begun)
+    }
+
+    /// Begins the picture of a question; others may be under way. What goes wrong is told by [`Machine::finish`].
+    #[must_use]
+    pub fn begin(&mut self, number: u64, request: Request) -> Begun {
+        let (begin, lost) = (Instant::now(), self.lost);
+        let picture = self.try_begin(&request);
+        Begun { number, request, begin, begin_ms: begin.elapsed().as_secs_f64() * 1.0e3, lost, picture }
+    }
+
+    /// Waits for the picture of a question. A device that was lost is opened again once.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    pub fn finish(&mut self, begun: Begun) -> Answer {
+        let Begun { number, request, begin, begin_ms, lost, picture } = begun;
+        let times = (begin, begin_ms);
+        let mut drawn = picture.and_then(|picture| self.try_finish(number, &request, times, picture));
         let was_lost = drawn.as_ref().is_err_and(is_lost);
         if was_lost {
-            self.forget();
-            drawn = self.try_draw(number, request, begin);
+            // Pictures that were under way together lose one device together.
+            if lost == self.lost {
+                self.forget();
+            }
+            let again = self.try_begin(&request);
+            drawn = again.and_then(|picture| self.try_finish(number, &request, times, picture));
         }
+        self.last_done = Some(Instant::now());
         drawn.map(Arc::new).map_err(|error| {
             // A weather that is refused leaves the renderer as it was; a device that is gone does not.
             if is_lost(&error) {
@@ -72,6 +151,7 @@ impl Machine {
     fn forget(&mut self) {
         self.renderer = None;
         self.device = None;
+        self.lost += 1;
     }
 
     /// Draws with a device that is open.
@@ -80,44 +160,72 @@ impl Machine {
         self.device = Some(device);
     }
 
-    fn try_draw(&mut self, number: u64, request: &Request, begin: Instant) -> Result<Drawn, RendererError> {
+    fn try_begin(&mut self, request: &Request) -> Result<Pending, RendererError> {
         let weather = self.prepare(request)?;
-        let Some(Ready { renderer, samples, .. }) = &mut self.renderer else {
+        let Some(Ready { renderer, .. }) = &mut self.renderer else {
             return Err(RendererError::NoGpuSupport);
         };
         if request.meters {
             renderer.set_exposure(None);
         }
-        let mut drops = None;
-        let (size, pixels, drops_drawn, passes) = if request.lists_drops {
-            let frame = renderer.frame(request.time_s)?;
-            let pixels = frame.pixels().into_iter().map(|[r, g, b]| [r, g, b, 255]).collect();
-            let in_picture = frame.picture.drawn;
-            let count = in_picture.len();
-            let parts = (frame.picture.size, pixels, count, frame.picture.passes);
-            drops = Some((frame.drops, in_picture));
-            parts
+        let pixels = if request.lists_drops {
+            PendingPixels::Listed(Box::new(renderer.begin_frame(request.time_s)?))
         } else {
-            let frame = renderer.display(request.time_s)?;
-            (frame.size, frame.pixels, frame.drops_drawn, frame.passes)
+            PendingPixels::Display(renderer.begin_display(request.time_s)?)
         };
         let frame_scene = Arc::new(renderer.first_scene().clone());
+        Ok(Pending {
+            pixels,
+            view: view(&weather, &frame_scene, request.time_s),
+            frame_scene,
+            is_in_flash: renderer.is_in_flash(request.time_s),
+            adapter: renderer.computer().adapter.clone(),
+        })
+    }
+
+    fn try_finish(
+        &self,
+        number: u64,
+        request: &Request,
+        (begin, begin_ms): (Instant, f64),
+        pending: Pending,
+    ) -> Result<Drawn, RendererError> {
+        let mut drops = None;
+        let (size, pixels, drops_drawn, passes) = match pending.pixels {
+            PendingPixels::Listed(frame) => {
+                let frame = frame.finish()?;
+                let pixels = frame.pixels().into_iter().map(|[r, g, b]| [r, g, b, 255]).collect();
+                let in_picture = frame.picture.drawn;
+                let count = in_picture.len();
+                drops = Some((frame.drops, in_picture));
+                (frame.picture.size, pixels, count, frame.picture.passes)
+            }
+            PendingPixels::Display(frame) => {
+                let frame = frame.finish()?;
+                (frame.size, frame.pixels, frame.drops_drawn, frame.passes)
+            }
+        };
+        let histogram = Histogram::of(&pixels);
+        let [width, height] = size.map(|edge| edge as usize);
+        let image = ColorImage::from_rgba_premultiplied([width, height], pixels.as_flattened());
+        let free = self.last_done.map_or(begin, |done| done.max(begin));
         Ok(Drawn {
             number,
             revision: request.revision,
             time_s: request.time_s,
             size,
-            samples: *samples,
-            view: view(&weather, &frame_scene, request.time_s),
-            histogram: Histogram::of(&pixels),
-            pixels,
-            frame_scene,
+            samples: request.samples,
+            view: pending.view,
+            histogram,
+            image: Arc::new(image),
+            frame_scene: pending.frame_scene,
             drops_drawn,
             drops,
             passes,
-            is_in_flash: renderer.is_in_flash(request.time_s),
-            frame_ms: begin.elapsed().as_secs_f64() * 1.0e3,
-            adapter: renderer.computer().adapter.clone(),
+            is_in_flash: pending.is_in_flash,
+            begin_ms,
+            frame_ms: free.elapsed().as_secs_f64() * 1.0e3,
+            adapter: pending.adapter,
         })
     }
 
@@ -169,11 +277,7 @@ fn is_lost(error: &RendererError) -> bool {
 }
 
 /// The camera of a picture.
-fn view(
-    weather: &Weather,
-    frame_scene: &downpour::trace::frame_scene::FrameScene,
-    time_s: f64,
-) -> PictureView {
+fn view(weather: &Weather, frame_scene: &FrameScene, time_s: f64) -> PictureView {
     let [width, height] = frame_scene.size.map(f64::from);
     let now = weather.at(time_s);
     let first = &frame_scene.viewpoint;
