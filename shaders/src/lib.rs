@@ -53,6 +53,7 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
         render::camera::MODULES,
         render::drop_light::MODULES,
         render::glass::MODULES,
+        render::glazing::MODULES,
         render::glow::MODULES,
         render::layers::MODULES,
         render::refine::MODULES,

@@ -4,6 +4,7 @@ pub mod brdf;
 pub mod camera;
 pub mod drop_light;
 pub mod glass;
+pub mod glazing;
 pub mod glow;
 pub mod host;
 pub mod layers;

@@ -10,6 +10,7 @@ mod drop_light;
 mod field;
 mod glass;
 mod glass_picture;
+mod glazing;
 mod host;
 mod mask;
 mod pane_shadow;
@@ -38,6 +39,7 @@ pub fn functions() -> Vec<FunctionCase> {
         field::functions(),
         glass::functions(),
         glass_picture::functions(),
+        glazing::functions(),
         host::functions(),
         mask::functions(),
         puddle::functions(),
@@ -67,6 +69,7 @@ pub fn kernels() -> Vec<KernelCase> {
         field::kernels(),
         glass::kernels(),
         glass_picture::kernels(),
+        glazing::kernels(),
         host::kernels(),
         mask::kernels(),
         puddle::kernels(),

@@ -94,7 +94,7 @@ fn hosts() -> Vec<Host> {
             eye, width, right, height, up, seed, forward, pixel_angle),
         host!(RenderFrame as "RenderFrame" in &render::scene::DATA,
             camera, grid, slots, lights, light_count, sky_rays, first_row, nearest, ray_fraction, projection, suns_out, puddles, puddle_count, pane,
-            turn, wetness, emitters, ray_spacing, ray_column, ray_row, unused, sky_levels, sky_irradiance),
+            turn, wetness, emitters, ray_spacing, ray_column, ray_row, glazing, sky_levels, sky_irradiance),
         host!(RenderCorner as "RenderCorner" in &render::scene::DATA, normal, material, tangent, uv, color),
         host!(TraceSlot as "TraceSlot" in &render::scene::TRACE, position, normal, light, look, factor),
         host!(TraceAmbient as "TraceAmbient" in &render::scene::TRACE, base, mirror),

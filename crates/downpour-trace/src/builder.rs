@@ -200,6 +200,7 @@ impl SceneBuilder {
             puddle_count: 0,
             pane: 0,
             wetness: 0,
+            glazing: 0,
             emitters: 0,
             sky: Arc::new(sky.texels.clone()),
             sky_levels: sky.levels,

@@ -87,8 +87,8 @@ pub struct RenderFrame {
     pub ray_column: u32,
     /// Its row.
     pub ray_row: u32,
-    /// Unused.
-    pub unused: u32,
+    /// Row of the table where rain on panes of the scene begins; 0: they are dry.
+    pub glazing: u32,
     /// Width, height and first texel of each level of the sky.
     pub sky_levels: [[u32; 4]; SCENE_SKY_LEVELS as usize],
     /// Irradiance of the sky over pi as spherical harmonics of degree 2.
@@ -104,7 +104,7 @@ pub struct SceneData {
     pub triangles: Arc<Vec<BvhTriangle>>,
     /// Three corners per triangle.
     pub corners: Arc<Vec<RenderCorner>>,
-    /// Materials, texture slots, lights, wetness, puddles and a pane, as rows.
+    /// Materials, texture slots, lights, wetness, rain on panes of the scene, puddles and a pane before the camera, as rows.
     pub table: Vec<[u32; 4]>,
     /// Texels of all levels of all textures, and behind them the tree of surfaces that shine ([`emitter`](crate::emitter)).
     pub texels: Arc<Vec<u32>>,
@@ -122,6 +122,8 @@ pub struct SceneData {
     pub pane: u32,
     /// Row where the wetness of surfaces begins; 0: all is dry.
     pub wetness: u32,
+    /// Row where rain on panes of the scene begins; 0: they are dry.
+    pub glazing: u32,
     /// Word of the texels where the tree of surfaces that shine begins; 0: none shine.
     pub emitters: u32,
     /// Texels of all levels of the sky.
@@ -164,7 +166,8 @@ impl SceneData {
             self.table.extend(light.rows());
         }
         self.light_count = kept + lights.len() as u32;
-        (self.puddles, self.puddle_count, self.pane, self.wetness) = (0, 0, 0, 0);
+        (self.puddles, self.puddle_count, self.pane) = (0, 0, 0);
+        (self.wetness, self.glazing) = (0, 0);
         #[cfg(feature = "wgpu")]
         {
             self.ripples = None;
@@ -263,7 +266,7 @@ impl RenderFrame {
             ray_spacing: 1,
             ray_column: 0,
             ray_row: 0,
-            unused: 0,
+            glazing: scene.glazing,
             sky_levels: scene.sky_levels,
             sky_irradiance: scene.sky_irradiance,
         })

@@ -27,6 +27,7 @@ use glam::DVec3;
 
 use crate::builder::SceneBuilder;
 use crate::data::SceneData;
+use crate::glazing;
 use crate::wet::SceneWetness;
 use downpour_render::RenderError;
 use downpour_render::camera::{EyeMotion, MAX_EXPOSURE_S, PictureEdge, Viewpoint, check_size};
@@ -119,6 +120,7 @@ impl FrameScene {
         }
         light::relight(&mut data, weather, loaded, origin, time_s);
         data.set_wetness(SceneWetness::of(weather, time_s, origin).as_ref());
+        data.set_glazing(&glazing::rows(weather, &loaded.scene, time_s, origin));
         let fov =
             weather.camera.fov.unwrap_or_else(|| seen.as_ref().map_or(weather::FOV_RAD, |seen| seen.fov));
         let (camera, mut viewpoint) = match &seen {
@@ -159,6 +161,7 @@ impl FrameScene {
             set_fov(&mut frame_scene.viewpoint, weather, time_s);
             light::relight(&mut frame_scene.data, weather, loaded, self.origin, time_s);
             frame_scene.data.set_wetness(SceneWetness::of(weather, time_s, self.origin).as_ref());
+            frame_scene.data.set_glazing(&glazing::rows(weather, &loaded.scene, time_s, self.origin));
             return Ok(frame_scene);
         };
         let distance_m = (seen.eye - self.origin).abs().max_element();
@@ -176,6 +179,7 @@ impl FrameScene {
         };
         light::relight(&mut frame_scene.data, weather, loaded, self.origin, time_s);
         frame_scene.data.set_wetness(SceneWetness::of(weather, time_s, self.origin).as_ref());
+        frame_scene.data.set_glazing(&glazing::rows(weather, &loaded.scene, time_s, self.origin));
         Ok(frame_scene)
     }
 

@@ -44,6 +44,7 @@ impl<T> KeptPlate<T> {
     pub fn shows(&self, scene: &SceneData, frame: &RenderFrame) -> bool {
         bytemuck::bytes_of(&self.frame) == bytemuck::bytes_of(&seedless(frame))
             && has_ripples_alike(&self.scene, scene)
+            && self.scene.glazing_rows() == scene.glazing_rows()
             && is_lit_alike(&self.scene, scene)
     }
 
@@ -91,7 +92,7 @@ fn has_ripples_alike(_: &SceneData, _: &SceneData) -> bool {
 }
 
 /// True if two scenes are lit alike: what they share is the same memory, and their tables are equal but for a wetness that nobody can
-/// tell. Ripples on a device are not looked at.
+/// tell. Ripples on a device, and rain on panes, are not looked at.
 pub(crate) fn is_lit_alike(before: &SceneData, scene: &SceneData) -> bool {
     let shares = Arc::ptr_eq(&before.nodes, &scene.nodes)
         && Arc::ptr_eq(&before.triangles, &scene.triangles)
@@ -99,16 +100,22 @@ pub(crate) fn is_lit_alike(before: &SceneData, scene: &SceneData) -> bool {
         && Arc::ptr_eq(&before.texels, &scene.texels)
         && Arc::ptr_eq(&before.sky, &scene.sky);
     let rows = |scene: &SceneData| {
-        let wet = scene.wetness as usize;
+        let (wet, panes) = (scene.wetness as usize, scene.glazing as usize);
         let skipped = if wet > 0 { wet..wet + WET_ROWS_THAT_CHANGE } else { 0..0 };
-        (skipped, scene.table.len())
+        (skipped, panes..panes + scene.glazing_rows().len(), scene.table.len())
     };
     if !shares || rows(before) != rows(scene) {
         return false;
     }
-    let (skipped, _) = rows(scene);
+    let (skipped, panes, _) = rows(scene);
     let (table, other) = (&scene.table, &before.table);
-    if table[..skipped.start] != other[..skipped.start] || table[skipped.end..] != other[skipped.end..] {
+    // Panes come after what is wet.
+    let beyond = panes.end.max(skipped.end);
+    let between = skipped.end..if panes.is_empty() { beyond } else { panes.start };
+    if table[..skipped.start] != other[..skipped.start]
+        || table[between.clone()] != other[between]
+        || table[beyond..] != other[beyond..]
+    {
         return false;
     }
     if skipped.is_empty() {
@@ -161,6 +168,23 @@ mod tests {
         assert!(plate.next(&frame, 3).is_some());
         assert!(plate.next(&frame, 3).is_none());
         assert_eq!(plate.count(), 3);
+    }
+
+    /// Rain that runs down panes is seen in the picture, and not in what drops show of the scene.
+    #[test]
+    fn rain_on_panes_makes_a_plate_anew() {
+        let mut scene = SceneBuilder::new().build(&SkyLight::uniform([1.0; 3]));
+        wet(&mut scene, 0.5);
+        let row = |rained: f32| [[0, 0, rained.to_bits(), 0], [0; 4]];
+        scene.set_glazing(&row(1.0));
+        let frame = frame_of(&scene, Vec3::ZERO, 1);
+        let plate = KeptPlate::new(&scene, &frame, ());
+        let mut later = scene.clone();
+        later.set_glazing(&row(1.1));
+        assert!(plate.shows(&scene, &frame) && !plate.shows(&later, &frame));
+        assert!(is_lit_alike(&scene, &later));
+        later.set_glazing(&[]);
+        assert!(!is_lit_alike(&scene, &later) && later.glazing == 0);
     }
 
     #[test]

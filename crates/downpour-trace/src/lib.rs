@@ -30,6 +30,11 @@ mod emitter;
 #[doc(hidden)]
 pub mod emitter;
 pub mod frame_scene;
+#[cfg(not(feature = "parity"))]
+mod glazing;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
+pub mod glazing;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
 pub mod kept;

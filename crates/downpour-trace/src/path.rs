@@ -33,7 +33,7 @@ use downpour_shaders::render::path::{
     PATH_SAME_FACET, PATH_SAME_PLANE, PATH_SECONDARY_ROUGHNESS, PATH_SHINES,
 };
 use downpour_shaders::render::puddle_water::{
-    PUDDLE_WATER_DOWN, PUDDLE_WATER_MATERIAL, PUDDLE_WATER_RAYS, PUDDLE_WATER_RIPPLED,
+    PUDDLE_WATER_DOWN, PUDDLE_WATER_INDEX, PUDDLE_WATER_MATERIAL, PUDDLE_WATER_RAYS, PUDDLE_WATER_RIPPLED,
 };
 use downpour_shaders::render::scene::{
     SCENE_FAR, SCENE_LAMP_GLASS, SCENE_LAYERS, SCENE_NONE, SCENE_PICTURE, SCENE_SEEN_BODY, SCENE_UNLIT,
@@ -43,6 +43,7 @@ use downpour_shaders::render::wet::WET_FAR;
 use glam::{Vec2, Vec3};
 
 use crate::brdf::brdf_fresnel;
+use crate::glazing::{glazing_open, glazing_surface, glazing_through};
 use crate::scatter::{ScatterRay, scatter_chance, scatter_draw, scatter_mirror};
 use crate::scene::water::{PuddleWater, puddle_water_above, puddle_water_refracted};
 use crate::scene::{SceneAsked, SceneView};
@@ -245,21 +246,37 @@ impl SceneView<'_> {
         let mut water: Option<PathWater> = None;
         let mut under = false;
         let wet = (frame.wetness > 0).then(|| data.wet_load());
+        // Widened by drops on panes.
+        let mut width = cone;
         for layer in 0..SCENE_LAYERS {
             let Some(hit) = data.surface_hit(start, towards, near, BVH_FAR) else {
-                path.radiance += throughput * (data.sky_level(0, towards) + self.scene_suns(towards));
+                let is_wide = width > cone;
+                let beyond = if is_wide {
+                    data.sky_cone(towards, width)
+                } else {
+                    data.sky_level(0, towards) + self.scene_suns(towards)
+                };
+                path.radiance += throughput * beyond;
                 return path;
             };
-            let mut found = data.surface_at(&hit, start, towards, cone);
+            let mut found = data.surface_at(&hit, start, towards, width);
             if let (false, Some(wet)) = (under, &wet) {
                 let wetness = self.wet_exposure(&found, wet);
                 if wetness > 0.0 {
-                    let footprint = cone * hit.distance / (-found.facet.dot(towards)).max(0.02).sqrt();
+                    let footprint = width * hit.distance / (-found.facet.dot(towards)).max(0.02).sqrt();
                     let relief = wet_relief(found.position + wet.shift, footprint);
                     found = wet_surface(&found, wetness, towards, &relief);
                 }
             }
             let mut material = data.corners[hit.triangle as usize * 3].material;
+            let mut drop = None;
+            let is_glazed = frame.glazing > 0 && !under && frame.projection == SCENE_PICTURE;
+            if let (true, Some(wet)) = (is_glazed, &wet) {
+                let footprint = width * hit.distance / (-found.facet.dot(towards)).max(0.1);
+                let water = self.glazing_find(&found, material, footprint, wet);
+                found = glazing_surface(&found, &water);
+                drop = Some(water).filter(|water| water.bend > 0.0);
+            }
             let mut distance = hit.distance;
             let mut depth = Vec2::ZERO;
             let met = match water {
@@ -367,6 +384,14 @@ impl SceneView<'_> {
             self.path_show(&mut path, &meeting, &light, towards, layer, throughput);
             under = false;
             throughput *= path_open(&found);
+            if let Some(drop) = drop {
+                width *= 1.0 + (PUDDLE_WATER_INDEX - 1.0) * drop.bend * (near - frame.nearest);
+                throughput *= glazing_open(&found, meeting.plan.gloss, towards, path_open(&found));
+                let facet = if found.facet.dot(drop.normal) > 0.0 { found.facet } else { -found.facet };
+                towards = glazing_through(towards, drop.normal, facet);
+                start = found.position;
+                near = 4.0 * frame.nearest;
+            }
             if path_max(throughput) < 1.0e-3 {
                 return path;
             }

@@ -14,7 +14,7 @@
 //! 5. The film follows the grains: noise of 3, 10 and 31 mm tilts it and makes it patchy. What a footprint does not resolve of the
 //!    slopes makes the coat rougher (M. Olano and D. Baker, LEAN Mapping, 2010), so that nothing flickers far away.
 //!
-//! Glass and what else lets light through stays as it is: a film changes little of it. Light that has been thrown back twice finds dry
+//! What lets light through stays as it is; drops on it are of [`glazing`](crate::glazing). Light that has been thrown back twice finds dry
 //! surfaces.
 
 use std::sync::OnceLock;
@@ -24,6 +24,7 @@ use downpour_math::ops;
 use downpour_math::rng::{rng_pcg4d, rng_unit};
 use downpour_shaders::bvh::BVH_FAR;
 use downpour_shaders::render::brdf::BRDF_GRAZING;
+use downpour_shaders::render::glazing::GLAZING_ROWS;
 use downpour_shaders::render::puddle_water::PUDDLE_WATER_NORMAL;
 use downpour_shaders::render::scene::{SCENE_BLENDED, SCENE_LIGHT_ROWS, SCENE_UNLIT};
 use downpour_shaders::render::wet::{
@@ -221,13 +222,14 @@ pub(crate) fn wet_surface(dry: &Surface, wetness: f32, along: Vec3, relief: &Wet
 }
 
 impl SceneData {
-    /// Sets how wet the surfaces are; `None`: dry. Puddles and a pane, which come after it in the table, are removed unless the
-    /// scene was wet before and still is.
+    /// Sets how wet the surfaces are; `None`: dry. What comes after it in the table - rain on panes, puddles, a pane before the camera -
+    /// is removed unless the scene was wet before and still is.
     pub fn set_wetness(&mut self, wetness: Option<&SceneWetness>) {
         let first = (self.lights + self.light_count * SCENE_LIGHT_ROWS) as usize;
         if (wetness.is_some()) != (self.wetness > 0) {
             self.table.truncate(first);
-            (self.puddles, self.puddle_count, self.pane, self.wetness) = (0, 0, 0, 0);
+            (self.puddles, self.puddle_count, self.pane) = (0, 0, 0);
+            (self.wetness, self.glazing) = (0, 0);
         }
         let Some(wetness) = wetness else { return };
         let words = |v: Vec4| v.to_array().map(f32::to_bits);
@@ -244,6 +246,35 @@ impl SceneData {
         self.wetness = first as u32;
         self.table.extend(head);
         self.table.extend(coat_rows());
+    }
+
+    /// Sets rows of the rain on panes of the scene, which is wet; none: they are dry. Puddles and a pane before the camera are removed
+    /// unless there were as many rows before.
+    #[doc(hidden)]
+    pub fn set_glazing(&mut self, rows: &[[u32; 4]]) {
+        if self.wetness == 0 {
+            return;
+        }
+        let first = (self.wetness + WET_HEAD_ROWS) as usize + coat_rows().len();
+        let known = self.glazing_rows().len();
+        if known != rows.len() {
+            self.table.truncate(first);
+            (self.puddles, self.puddle_count, self.pane) = (0, 0, 0);
+            self.glazing = if rows.is_empty() { 0 } else { first as u32 };
+            self.table.extend(rows);
+        } else if self.glazing > 0 {
+            self.table[first..first + known].copy_from_slice(rows);
+        }
+    }
+
+    /// Rows of the rain on panes of the scene.
+    pub(crate) fn glazing_rows(&self) -> &[[u32; 4]] {
+        let first = self.glazing as usize;
+        if first == 0 {
+            return &[];
+        }
+        let count = self.table[first + 1][0] * GLAZING_ROWS + 2;
+        &self.table[first..first + count as usize]
     }
 
     /// Reads the wetness.

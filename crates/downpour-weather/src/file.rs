@@ -16,6 +16,7 @@ use super::puddle::{self, Puddle, PuddleTable};
 use super::quantity::{Exactly, Whole};
 use super::rain::{self, Rain, RainTable};
 use super::ripples::RipplesTable;
+use super::scene_panes::{ScenePane, ScenePaneTable};
 use super::sky::{Sky, SkyTable, SunSource, SunTable};
 use super::splashes::{Splashes, SplashesTable};
 use super::spray::{Spray, SprayTable};
@@ -23,7 +24,8 @@ use super::streaks::StreaksTable;
 use super::wetness::{Wetness, WetnessTable};
 use super::wind::{self, GustsTable, TurbulenceTable, WindFieldTable, WindTable};
 use super::{
-    Camera, CameraPath, MAX_DRIPS, MAX_LIGHTS, MAX_MODELS, MAX_PUDDLES, Weather, camera::CameraTable,
+    Camera, CameraPath, MAX_DRIPS, MAX_LIGHTS, MAX_MODELS, MAX_PANES, MAX_PUDDLES, Weather,
+    camera::CameraTable,
 };
 use downpour_scene::error::{SceneError, quoted};
 use downpour_scene::uri::{Address, RelativePath, check};
@@ -59,6 +61,7 @@ pub(super) struct Tables {
     puddle: Vec<PuddleTable>,
     ripples: RipplesTable,
     wetness: WetnessTable,
+    pane: Vec<ScenePaneTable>,
     splashes: SplashesTable,
     spray: SprayTable,
     drips: DripsTable,
@@ -84,6 +87,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         ("flash", tables.flash.len(), MAX_FLASHES),
         ("puddle", tables.puddle.len(), MAX_PUDDLES),
         ("drip", tables.drip.len(), MAX_DRIPS),
+        ("pane", tables.pane.len(), MAX_PANES),
         ("wind", tables.wind.len(), downpour_wind::WIND_PARTS),
     ] {
         if count > most {
@@ -110,11 +114,17 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
     let puddles = numbered(&tables.puddle, |i, table| Puddle::checked(i, table, &positions))?;
     let (puddles, fills): (Vec<_>, Vec<_>) = puddles.into_iter().unzip();
     puddle::check_all(&puddles, &positions)?;
+    let wetness = Wetness::checked(&tables.wetness, &rain, &positions)?;
+    if !wetness.is_enabled && !tables.pane.is_empty() {
+        let allowed = "no [[pane]], or a rain that wets surfaces";
+        return Err(positions.bad("pane", "beside wetness.enabled = false", allowed));
+    }
     let wind = wind::checked(&tables.wind, tables.gusts.as_ref(), tables.turbulence.as_ref(), &positions)?;
     let is_still = wind.is_still() && camera.path.as_ref().is_none_or(CameraPath::is_still);
     Ok(Weather {
         name: String::new(),
-        wetness: Wetness::checked(&tables.wetness, &rain, &positions)?,
+        wetness,
+        panes: numbered(&tables.pane, |i, table| ScenePane::checked(i, table, &positions))?,
         splashes: Splashes::checked(&tables.splashes, &positions)?,
         spray,
         drips: Drips::checked(&tables.drips, &tables.drip),

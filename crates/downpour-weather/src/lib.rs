@@ -42,6 +42,7 @@ mod puddle;
 mod quantity;
 mod rain;
 mod ripples;
+mod scene_panes;
 #[cfg(feature = "schema")]
 mod schema;
 mod sky;
@@ -84,6 +85,7 @@ pub use rain::{
     RainRefraction, RainUnresolved, RainVolume,
 };
 pub use ripples::Waves;
+pub use scene_panes::{ScenePane, SceneRectangle};
 #[cfg(feature = "schema")]
 pub use schema::json_schema;
 pub use sky::{Sky, SkySource, SunSource};
@@ -110,6 +112,9 @@ pub const MAX_LIGHTS: usize = 1024;
 
 /// Maximum number of entries `[[puddle]]`.
 pub const MAX_PUDDLES: usize = 16;
+
+/// Maximum number of entries `[[pane]]`.
+pub const MAX_PANES: usize = 16;
 
 /// Maximum number of entries `[[drip]]`.
 pub const MAX_DRIPS: usize = 4096;
@@ -178,6 +183,8 @@ pub struct Weather {
     pub waves: Waves,
     /// Wetness of the surfaces.
     pub wetness: Wetness,
+    /// Glass of the scene on which rain is seen, in the order of the file.
+    pub panes: Vec<ScenePane>,
     /// Splashes where drops hit surfaces.
     pub splashes: Splashes,
     /// Mist of droplets over what rain hits.
@@ -213,6 +220,7 @@ impl Default for Weather {
             puddles: Vec::new(),
             waves: Waves::Water,
             wetness: Wetness::default(),
+            panes: Vec::new(),
             splashes: Splashes::default(),
             spray: Spray::default(),
             drips: Drips::default(),

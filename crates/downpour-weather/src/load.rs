@@ -77,6 +77,7 @@ impl Loaded {
         if reloaded.models {
             return Ok((load(weather, files, budget)?, reloaded));
         }
+        check_panes(weather, &self.scene)?;
         let mut remaining = *budget;
         let mut loaded = Self { masks: masks(weather, files, &mut remaining)?, ..self.clone() };
         read_pane_maps(weather, files, &mut remaining)?;
@@ -192,6 +193,7 @@ pub fn load(weather: &Weather, files: &dyn Files, budget: &mut Budget) -> Result
     for model in &weather.models {
         animations.push(add(&mut scene, model, &mut known, files, &mut remaining)?);
     }
+    check_panes(weather, &scene)?;
     for lamp in &weather.lights {
         remaining.take_nodes(1, "light").map_err(|error| error.in_file(&weather.name))?;
         add_lamp(&mut scene, lamp);
@@ -207,6 +209,14 @@ pub fn load(weather: &Weather, files: &dyn Files, budget: &mut Budget) -> Result
 }
 
 /// Triangles that drops are drawn as: all of them, or an error.
+fn check_panes(weather: &Weather, scene: &Scene) -> Result<(), SceneError> {
+    let names = scene.materials.iter().map(|material| material.name.as_str());
+    for (index, pane) in weather.panes.iter().enumerate() {
+        pane.check_material(index, names.clone()).map_err(|error| error.in_file(&weather.name))?;
+    }
+    Ok(())
+}
+
 fn drop_model(
     weather: &Weather,
     files: &dyn Files,

@@ -99,6 +99,9 @@ ranges! {
     ReachM: 0.02, 10.0, "0.02 to 10 m";
     PaneTiltDeg: 10.0, 90.0, "10 to 90 degrees";
     PaneM: 0.01, 10.0, "0.01 to 10 m";
+    SheetM: 0.02, 100.0, "0.02 to 100 m";
+    SheetHeightM: 0.1, 100.0, "0.1 to 100 m";
+    SheetDropMm: 0.5, 10.0, "0.5 to 10 mm";
     AboveM: 0.0, 1.0, "0 to 1 m";
     CellMm: 0.25, 5.0, "0.25 to 5 mm";
     PaneMS: 0.0, 100.0, "0 to 100 m/s";

@@ -1,5 +1,6 @@
 //! `wgsl/render/path.wgsl`: what a ray of the camera sees. Twin: `downpour_trace::path`.
 
+use super::glazing::GLAZING;
 use super::puddle_water::PUDDLE_WATER;
 use super::scatter::SCATTER;
 use super::scene::{DATA, SCENE, SKY, SURFACE};
@@ -109,5 +110,6 @@ pub static PATH: Module = Module {
         &PUDDLE_WATER,
         &OPTICS,
         &WET,
+        &GLAZING,
     ],
 };

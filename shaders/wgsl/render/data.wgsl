@@ -37,7 +37,8 @@ struct RenderFrame {
     // Column and row of such a pixel in each cell of pixels.
     ray_column: u32,
     ray_row: u32,
-    unused: u32,
+    // Row of the table where rain on panes of the scene begins; 0: they are dry.
+    glazing: u32,
     // Width, height and first texel of each level of the sky.
     sky_levels: array<vec4u, SCENE_SKY_LEVELS>,
     // Irradiance of the sky over pi as spherical harmonics of degree 2.

@@ -452,6 +452,8 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
     if WET_SURFACES {
         wet = wet_load();
     }
+    // Widened by drops on panes.
+    var width = cone;
     for (var layer = 0u; layer < SCENE_LAYERS; layer += 1u) {
         // Turn 0 meets the surface; the others are rays that look for its light. One text for all of them: a shader holds
         // the hierarchy's walk and the materials once.
@@ -461,8 +463,9 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
         light.distance = -1.0;
         var of_water = false;
         var ripple = vec3f(0.0);
+        var drop = GlazingWater();
         for (var turn = 0u; turn <= meeting.plan.mirrors + meeting.plan.rays; turn += 1u) {
-            var ray = ScatterRay(towards, cone, vec3f(1.0), 0.0, vec3f(1.0));
+            var ray = ScatterRay(towards, width, vec3f(1.0), 0.0, vec3f(1.0));
             var from_position = start;
             var nearest = near;
             var at = meeting.surface;
@@ -519,7 +522,11 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                 let hit = surface_hit(from_position, ray.along, nearest, BVH_FAR);
                 if hit.distance < 0.0 {
                     if turn == 0u {
-                        path.radiance += throughput * (sky_level(0u, towards) + scene_suns(towards));
+                        var beyond = sky_level(0u, towards) + scene_suns(towards);
+                        if WET_SURFACES && GLAZING_PANES && width > cone {
+                            beyond = sky_cone(towards, width);
+                        }
+                        path.radiance += throughput * beyond;
                         return path;
                     }
                     light = path_accumulated(light, ray, sky_cone(ray.along, ray.width), of_shown);
@@ -536,6 +543,11 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                         footprint = ray.width * hit.distance / sqrt(max(-dot(found.facet, ray.along), 0.02));
                     }
                     found = wet_surface(found, wetness, ray.along, wet_relief(found.position + wet.shift, footprint));
+                }
+                if WET_SURFACES && GLAZING_PANES && turn == 0u && !under && render_frame.projection == SCENE_PICTURE {
+                    let footprint = width * hit.distance / max(-dot(found.facet, towards), 0.1);
+                    drop = glazing_find(found, render_corners[hit.triangle * 3u].material, footprint, wet);
+                    found = glazing_surface(found, drop);
                 }
                 // All lamps for the first surface; for others, some sampled lamps.
                 var lamps = 0u;
@@ -702,6 +714,14 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
         path = path_show(path, meeting, light, towards, layer, throughput);
         under = false;
         throughput *= path_open(surface);
+        if WET_SURFACES && GLAZING_PANES && drop.bend > 0.0 {
+            width *= 1.0 + (PUDDLE_WATER_INDEX - 1.0) * drop.bend * (near - render_frame.nearest);
+            throughput *= glazing_open(surface, meeting.plan.gloss, towards, path_open(surface));
+            let facet = select(-surface.facet, surface.facet, dot(surface.facet, drop.normal) > 0.0);
+            towards = glazing_through(towards, drop.normal, facet);
+            start = surface.position;
+            near = 4.0 * render_frame.nearest;
+        }
         if path_max(throughput) < 1.0e-3 {
             return path;
         }

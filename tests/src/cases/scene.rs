@@ -466,12 +466,22 @@ pub(super) fn picture_by(
 }
 
 /// A dry scene of which nothing shines.
-pub(super) const DULL: &[(&str, f64)] =
-    &[("SCENE_PANE", 0.0), ("SCENE_SHINES", 0.0), ("SCENE_WET", 0.0), ("WET_SURFACES", 0.0)];
+pub(super) const DULL: &[(&str, f64)] = &[
+    ("GLAZING_PANES", 0.0),
+    ("SCENE_PANE", 0.0),
+    ("SCENE_SHINES", 0.0),
+    ("SCENE_WET", 0.0),
+    ("WET_SURFACES", 0.0),
+];
 
 /// A dry scene of which something does.
-const SHINING: &[(&str, f64)] =
-    &[("SCENE_PANE", 0.0), ("SCENE_SHINES", 1.0), ("SCENE_WET", 0.0), ("WET_SURFACES", 0.0)];
+const SHINING: &[(&str, f64)] = &[
+    ("GLAZING_PANES", 0.0),
+    ("SCENE_PANE", 0.0),
+    ("SCENE_SHINES", 1.0),
+    ("SCENE_WET", 0.0),
+    ("WET_SURFACES", 0.0),
+];
 
 const PICTURE: Tol = Tol::relative(
     2.0e-3,

@@ -107,8 +107,14 @@ const PICTURE: Tol = Tol::relative(
 .with_outliers(6.0e-3);
 
 /// Overrides of a wet scene of which something shines, or nothing.
-const fn wet(shines: f64) -> [(&'static str, f64); 4] {
-    [("SCENE_PANE", 0.0), ("SCENE_SHINES", shines), ("SCENE_WET", 0.0), ("WET_SURFACES", 1.0)]
+const fn wet(shines: f64) -> [(&'static str, f64); 5] {
+    [
+        ("GLAZING_PANES", 0.0),
+        ("SCENE_PANE", 0.0),
+        ("SCENE_SHINES", shines),
+        ("SCENE_WET", 0.0),
+        ("WET_SURFACES", 1.0),
+    ]
 }
 
 const DULL: &[(&str, f64)] = &wet(0.0);

@@ -199,7 +199,8 @@ fn water(input: &Input, frame_scene: &FrameScene) -> Result<Vec<Entry>, Failure>
     let wetness = weather.wetness_at(0.0).map_or(0.0, |at| at.level());
     Ok(vec![
         Entry::new("wetness", "wetness of level ground in the rain", Datum::Computed(wetness, 3), ""),
-        count("puddles", "rectangles with puddles", input.weather.puddles.len()),
+        count("panes", "panes of the scene that rain is seen on", weather.panes.len()),
+        count("puddles", "rectangles with puddles", weather.puddles.len()),
         Entry::new("puddle_area_m2", "area under water", Datum::Computed(sum(PuddleMap::area_m2), 4), "m^2"),
         Entry::new(
             "puddle_volume_l",

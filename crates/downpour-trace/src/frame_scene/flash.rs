@@ -52,8 +52,10 @@ impl FrameScene {
         let sky = lit_clouds(flashes);
         let data = &mut frame_scene.data;
         data.remove_emission();
+        let panes = data.glazing_rows().to_vec();
         data.set_lights(&lights);
         data.set_wetness(SceneWetness::of(weather, time_s, self.origin).as_ref());
+        data.set_glazing(&panes);
         data.sky = Arc::new(sky.texels);
         data.sky_levels = sky.levels;
         data.sky_irradiance = sky.irradiance;

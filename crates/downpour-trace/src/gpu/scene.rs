@@ -251,11 +251,12 @@ struct SceneParts {
     has_pane: bool,
     is_wet: bool,
     shines: bool,
+    is_glazed: bool,
 }
 
 impl SceneParts {
     /// Number of combinations.
-    const COUNT: usize = 16;
+    const COUNT: usize = 32;
 
     fn of(frame: &RenderFrame) -> Self {
         Self {
@@ -263,12 +264,13 @@ impl SceneParts {
             has_pane: frame.pane > 0,
             is_wet: frame.wetness > 0,
             shines: frame.emitters > 0,
+            is_glazed: frame.glazing > 0,
         }
     }
 
     /// Index of the combination, below [`SceneParts::COUNT`].
     fn index(self) -> usize {
-        let flags = [self.has_puddles, self.has_pane, self.is_wet, self.shines];
+        let flags = [self.has_puddles, self.has_pane, self.is_wet, self.shines, self.is_glazed];
         flags.iter().rev().fold(0, |index, &flag| index << 1 | usize::from(flag))
     }
 }
@@ -281,6 +283,7 @@ fn tracer(gpu: &Gpu, samples: SampleDispatches, parts: SceneParts) -> Result<Com
         ("SCENE_PANE", number(parts.has_pane)),
         ("WET_SURFACES", number(parts.is_wet)),
         ("SCENE_SHINES", number(parts.shines)),
+        ("GLAZING_PANES", number(parts.is_glazed)),
     ];
     let kernel = match samples {
         SampleDispatches::Together => &TRACE_KERNEL,

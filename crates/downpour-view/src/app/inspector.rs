@@ -450,6 +450,8 @@ fn entry_title(entry: &Plain, list: &str, index: usize) -> String {
 fn minimal(list: &str) -> Option<Plain> {
     let numbers = |values: &[f64]| Plain::of_numbers(values);
     let entries: Vec<(&str, Plain)> = match list {
+        // Any glass of the scene.
+        "pane" => Vec::new(),
         "flash" => vec![("time_s", Plain::Number(1.0)), ("azimuth_deg", Plain::Number(0.0))],
         "wiper" => vec![
             ("pivot_m", numbers(&[0.3, 0.38])),

@@ -26,7 +26,7 @@ const HOLLOW_VIEW: &str =
     "[camera]\nposition_m = [0.9, 0.9, -15.6]\nlook_at_m = [0.95, 0.02, -18.2]\nfov_deg = 40\n";
 
 /// All of them.
-pub(super) const EFFECTS: [Effect; 14] = [
+pub(super) const EFFECTS: [Effect; 15] = [
     Effect {
         name: "rain",
         title: "Drops, streaks and unresolved rain",
@@ -157,6 +157,17 @@ pub(super) const EFFECTS: [Effect; 14] = [
         off: "",
         on: "[glass]\ndistance_m = 0.34\ntilt_deg = 60\nsize_m = [0.5, 0.37]\ncell_mm = 0.85\nspeed_m_s = 8\nfocus = \"glass\"\naperture_mm = 6\n\
              before_s = 60.45\n",
+    },
+    Effect {
+        name: "panes",
+        title: "Rain on shop windows",
+        base: "day.toml",
+        time_s: "2",
+        without: &[],
+        both: "[[wind]]\nuniform = { speed_m_s = 4, towards_deg = 0 }\n[camera]\nposition_m = [4.9, 1.5, -41.3]\nlook_at_m = [8.0, 1.5, -42.0]\n\
+               fov_deg = 45\n",
+        off: "",
+        on: "[[pane]]\nmaterial = \"glass\"\n",
     },
     Effect {
         name: "wipers",
