@@ -480,18 +480,13 @@ pub(crate) fn glazing_open(surface: &Surface, gloss: Vec3, along: Vec3, open: Ve
 /// goes back to where it came from.
 #[must_use]
 pub fn glazing_through(along: Vec3, normal: Vec3, facet: Vec3) -> Vec3 {
-    let (mut first, mut second) = if along.dot(facet) < 0.0 { (normal, facet) } else { (-facet, -normal) };
+    let (mut first, second) = if along.dot(facet) < 0.0 { (normal, facet) } else { (-facet, -normal) };
     // A slope that a ray from aside does not meet.
-    let met = |side: Vec3, along: Vec3| {
-        if along.dot(side) <= -0.02 {
-            return side;
-        }
-        let side = side - along * (along.dot(side) + 0.02);
-        side / side.dot(side).sqrt()
-    };
-    first = met(first, along);
+    if along.dot(first) > -0.02 {
+        first -= along * (along.dot(first) + 0.02);
+        first /= first.dot(first).sqrt();
+    }
     let (within, _) = optics_refract(along.to_array(), first.to_array(), 1.0 / PUDDLE_WATER_INDEX);
-    second = met(second, within.into());
     let (out, squared) = optics_refract(within, second.to_array(), PUDDLE_WATER_INDEX);
     if squared <= 0.0 {
         return optics_reflect(along.to_array(), first.to_array()).into();

@@ -373,17 +373,13 @@ fn glazing_open(surface: Surface, gloss: vec3f, along: vec3f, open: vec3f) -> ve
 fn glazing_through(along: vec3f, normal: vec3f, facet: vec3f) -> vec3f {
     let inward = dot(along, facet) < 0.0;
     var first = select(-facet, normal, inward);
-    var second = select(-normal, facet, inward);
+    let second = select(-normal, facet, inward);
     // A slope that a ray from aside does not meet.
     if dot(along, first) > -0.02 {
         first -= along * (dot(along, first) + 0.02);
         first = first / sqrt(dot(first, first));
     }
     let within = optics_refract(along, first, 1.0 / PUDDLE_WATER_INDEX);
-    if dot(within.xyz, second) > -0.02 {
-        second -= within.xyz * (dot(within.xyz, second) + 0.02);
-        second = second / sqrt(dot(second, second));
-    }
     let out = optics_refract(within.xyz, second, PUDDLE_WATER_INDEX);
     if out.w <= 0.0 {
         return optics_reflect(along, first);

@@ -1,6 +1,7 @@
 //! `shaders/wgsl/render/glazing.wgsl` against `downpour_trace::glazing`.
 
 use downpour_gpu::{Gpu, GpuError};
+use downpour_math::rng::{rng_pcg4d, rng_unit};
 use downpour_shaders::render::glazing::GLAZING;
 use downpour_shaders::render::scene::{SCENE_NONE, TRACE_KERNEL};
 use downpour_trace::SceneWetness;
@@ -14,7 +15,7 @@ use downpour_weather::WetnessAt;
 use glam::{Vec2, Vec3};
 
 use super::scene::{PictureRays, picture_by, scene};
-use crate::Domain::{AnyWord, Below, Fixed, OneOf, Uniform, Unit3};
+use crate::Domain::{AnyWord, Below, Fixed, Made, OneOf, Or, Uniform, Unit3};
 use crate::function::Run;
 use crate::words::{Args, IntoWords as _};
 use crate::{Domain, FunctionCase, KernelCase, Tol};
@@ -48,10 +49,13 @@ const PANE: [Domain; 10] = [
     Uniform(-0.2, 0.2),
     Uniform(-0.2, 0.2),
     Uniform(-0.2, 0.2),
-    OneOf(&[0.0, 0.5, 1.0]),
+    OneOf(&[0.0, 0.005, 0.5, 1.0]),
     Unit3,
     Uniform(0.1, 1.0),
 ];
+
+/// The beginning of [`PANE`] with heads of runs of centimeters, so that places are under them.
+const HUGE: [Domain; 3] = [Below(3), Uniform(1.0, 3.0), Uniform(0.004, 0.05)];
 
 const PANE_END: [Domain; 2] = [Unit3, Uniform(0.05, 0.5)];
 
@@ -99,6 +103,31 @@ const DROP: Tol = Tol::absolute(
     "a number of runs of up to 300 (0.5 ulp each in 4 steps), times the way of a run; a drop's edge may fall on either side",
 )
 .with_outliers(4.0e-3);
+
+fn runner(a: &mut Args<'_>) -> Vec<u32> {
+    let place = place(a);
+    of_drop(glazing_runner(&place, &pane(a)))
+}
+
+fn through(a: &mut Args<'_>) -> Vec<u32> {
+    let (along, normal) = (vec3(a), vec3(a));
+    glazing_through(along, normal, vec3(a)).to_array().words()
+}
+
+/// A ray, a normal, and a facet that is not far from it.
+fn tilted(random: [u32; 4]) -> Vec<u32> {
+    let other = rng_pcg4d(random);
+    let more = rng_pcg4d(other);
+    let unit = |words: [u32; 3]| {
+        let v = Vec3::from_array(words.map(|word| 2.0 * rng_unit(word) - 1.0));
+        v.try_normalize().unwrap_or(Vec3::Y)
+    };
+    let facet = unit([random[0], random[1], random[2]]);
+    let aside = unit([other[0], other[1], other[2]]);
+    let normal = (facet + aside * (0.85 * rng_unit(random[3]))).normalize();
+    let along = unit([more[0], more[1], more[2]]);
+    [along, normal, facet].iter().flat_map(|v| v.to_array().map(f32::to_bits)).collect()
+}
 
 /// The cases.
 pub(super) fn functions() -> Vec<FunctionCase> {
@@ -213,10 +242,18 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 of_drop(glazing_still(&place, &pane, level, cell, vec2(a)))
             },
         ),
-        FunctionCase::new("glazing_runner", &GLAZING, &all, DROP, |a| {
-            let place = place(a);
-            of_drop(glazing_runner(&place, &pane(a)))
-        }),
+        FunctionCase::new("glazing_runner", &GLAZING, &all, DROP, runner),
+        FunctionCase::new(
+            "glazing_runner",
+            &GLAZING,
+            &domains(&[&PLACE, &HUGE, &PANE[3..], &PANE_END]),
+            Tol::absolute(
+                2.0e-4,
+                "runs as above, of heads that are larger: a place is under several, of which the higher counts",
+            )
+            .with_outliers(4.0e-3),
+            runner,
+        ),
         FunctionCase::new(
             "glazing_place",
             &GLAZING,
@@ -256,7 +293,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &GLAZING,
             &domains(&[
                 &PLACE,
-                &[Uniform(-0.001, 0.001), Uniform(-0.001, 0.001), Uniform(0.001_5, 0.004), Uniform(1.0, 2.4)],
+                &[Uniform(-0.001, 0.001), Uniform(-0.001, 0.001), Or(&Uniform(0.001_5, 0.004), &[0.0]), Uniform(1.0, 2.4)],
                 &[Unit3, Uniform(0.0, 0.02)],
             ]),
             Tol::relative(1.0e-4, 1.0e-4, "a sum of unit vectors, which may cancel, over its length")
@@ -275,10 +312,16 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &[Unit3, Unit3, Unit3],
             Tol::absolute(2.0e-3, "roots of differences near total reflection, whose edge is sharp")
                 .with_outliers(4.0e-3),
-            |a| {
-                let (along, normal) = (vec3(a), vec3(a));
-                glazing_through(along, normal, vec3(a)).to_array().words()
-            },
+            through,
+        ),
+        // As drops are: tilted by up to 60 degrees from the pane.
+        FunctionCase::new(
+            "glazing_through",
+            &GLAZING,
+            &[Made(tilted)],
+            Tol::absolute(1.0e-3, "roots of differences near total reflection, whose edge is sharp")
+                .with_outliers(4.0e-3),
+            through,
         ),
     ]
 }
