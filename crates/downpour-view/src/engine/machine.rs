@@ -154,6 +154,12 @@ impl Machine {
         self.lost += 1;
     }
 
+    /// Devices that were lost.
+    #[cfg(test)]
+    pub(super) fn losses(&self) -> u32 {
+        self.lost
+    }
+
     /// Draws with a device that is open.
     #[cfg(test)]
     pub(super) fn set_device(&mut self, device: Device) {

@@ -91,6 +91,13 @@ fn a_lost_device_is_opened_again() {
     assert!(machine.draw(1, request.clone()).unwrap().image == whole.image);
     gpu.device().destroy();
     assert!(machine.draw(2, request.clone()).unwrap().image == whole.image);
+    // Two pictures that were under way together lose one device together.
+    let mut machine = Machine::new(DeviceChoice { backend: Backend::Gpu, adapter: None });
+    machine.set_device(Device::gpu(lost_after(Some(2)), false));
+    let [first, second] = [1, 2].map(|number| machine.begin(number, request.clone()));
+    assert!(machine.finish(first).unwrap().image == whole.image);
+    assert!(machine.finish(second).is_ok());
+    assert_eq!(machine.losses(), 1);
     // One that does not come back is the end of pictures: the window saves what was made.
     let adapter = Some("no such".to_owned());
     let mut machine = Machine::new(DeviceChoice { backend: Backend::Gpu, adapter });
