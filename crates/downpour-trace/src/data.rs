@@ -161,16 +161,28 @@ impl SceneData {
     /// Sets the lights behind the first `kept`, as [`SceneData::set_lights`] does all of them.
     pub(crate) fn set_lights_from(&mut self, kept: u32, lights: &[LightSource]) {
         let kept = kept.min(self.light_count);
-        self.table.truncate((self.lights + kept * SCENE_LIGHT_ROWS) as usize);
+        self.cut_table((self.lights + kept * SCENE_LIGHT_ROWS) as usize);
         for light in lights {
             self.table.extend(light.rows());
         }
         self.light_count = kept + lights.len() as u32;
-        (self.puddles, self.puddle_count, self.pane) = (0, 0, 0);
-        (self.wetness, self.glazing) = (0, 0);
         #[cfg(feature = "wgpu")]
         {
             self.ripples = None;
+        }
+    }
+
+    /// Removes the rows of the table from `first` on, with what begins there of wetness, rain on panes, puddles and the pane before the
+    /// camera.
+    pub(crate) fn cut_table(&mut self, first: usize) {
+        self.table.truncate(first);
+        for row in [&mut self.wetness, &mut self.glazing, &mut self.puddles, &mut self.pane] {
+            if *row as usize >= first {
+                *row = 0;
+            }
+        }
+        if self.puddles == 0 {
+            self.puddle_count = 0;
         }
     }
 

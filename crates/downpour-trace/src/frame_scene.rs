@@ -93,6 +93,13 @@ pub struct FrameScene {
     pub left_out: usize,
 }
 
+/// Sets light and water on surfaces to a time in seconds.
+fn set_time(data: &mut SceneData, weather: &Weather, loaded: &Loaded, origin: DVec3, time_s: f64) {
+    light::relight(data, weather, loaded, origin, time_s);
+    data.set_wetness(SceneWetness::of(weather, time_s, origin).as_ref());
+    data.set_glazing(&glazing::rows(weather, &loaded.scene, time_s, origin));
+}
+
 impl FrameScene {
     /// Builds the scene of a weather's frame at a time in seconds: animated models, sky, sun, lamps, camera.
     ///
@@ -118,9 +125,7 @@ impl FrameScene {
         if let Some(sun) = loaded.sun {
             data.set_light_radius(data.light_count - 1, sun.angular_radius);
         }
-        light::relight(&mut data, weather, loaded, origin, time_s);
-        data.set_wetness(SceneWetness::of(weather, time_s, origin).as_ref());
-        data.set_glazing(&glazing::rows(weather, &loaded.scene, time_s, origin));
+        set_time(&mut data, weather, loaded, origin, time_s);
         let fov =
             weather.camera.fov.unwrap_or_else(|| seen.as_ref().map_or(weather::FOV_RAD, |seen| seen.fov));
         let (camera, mut viewpoint) = match &seen {
@@ -159,9 +164,7 @@ impl FrameScene {
         let Some(seen) = CameraView::of(weather, loaded, &posed(loaded, time_s), time_s) else {
             let mut frame_scene = Self { shutter_s: weather.drop_exposure_s(time_s), ..self.clone() };
             set_fov(&mut frame_scene.viewpoint, weather, time_s);
-            light::relight(&mut frame_scene.data, weather, loaded, self.origin, time_s);
-            frame_scene.data.set_wetness(SceneWetness::of(weather, time_s, self.origin).as_ref());
-            frame_scene.data.set_glazing(&glazing::rows(weather, &loaded.scene, time_s, self.origin));
+            set_time(&mut frame_scene.data, weather, loaded, self.origin, time_s);
             return Ok(frame_scene);
         };
         let distance_m = (seen.eye - self.origin).abs().max_element();
@@ -177,9 +180,7 @@ impl FrameScene {
             shutter_s: weather.drop_exposure_s(time_s),
             ..self.clone()
         };
-        light::relight(&mut frame_scene.data, weather, loaded, self.origin, time_s);
-        frame_scene.data.set_wetness(SceneWetness::of(weather, time_s, self.origin).as_ref());
-        frame_scene.data.set_glazing(&glazing::rows(weather, &loaded.scene, time_s, self.origin));
+        set_time(&mut frame_scene.data, weather, loaded, self.origin, time_s);
         Ok(frame_scene)
     }
 

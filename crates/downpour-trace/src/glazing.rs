@@ -13,9 +13,9 @@
 //! 4. A drop mirrors what its slope faces, as the glass does, and a ray through it is refracted at its surface and at the glass, which
 //!    shows what is behind it upside down. What is reflected within goes back to where it came from: none of the light is lost.
 //!
-//! Limits: drops do not run into one another but for runs, and do not dim the light of lamps through the pane; drops
-//! of which a pixel shows several fade, and from where it is six of their radii wide they are not seen; rays that look for light do not see drops; when the rate changes, runs that are on their way change their speed
-//! with it for as long as they need for the pane.
+//! Limits: drops do not run into one another but for runs, and do not dim the light of lamps through the pane; drops of which a pixel shows
+//! several fade, and from where it is six of their radii wide they are not seen; rays that look for light do not see drops; when the rate
+//! changes, runs that are on their way change their speed with it for as long as they need for the pane.
 
 use downpour_drop::optics::{optics_reflect, optics_refract};
 use downpour_math::ops;
@@ -541,10 +541,9 @@ impl SceneView<'_> {
         if flux < GLAZING_MIN_FLUX {
             return none;
         }
-        let panes = (0..rain.count).map(|index| data.glazing_pane(index));
         let clear = surface.transmission > 0.0;
-        let held = panes.into_iter().find(|pane| glazing_holds(pane, material, surface.position, clear));
-        let Some(pane) = held else {
+        let held = |pane: &GlazingPane| glazing_holds(pane, material, surface.position, clear);
+        let Some(pane) = (0..rain.count).map(|index| data.glazing_pane(index)).find(held) else {
             return none;
         };
         let place = glazing_place(&rain, &pane, surface.position, wet.shift, facet, flux);

@@ -109,13 +109,15 @@ pub(crate) fn is_lit_alike(before: &SceneData, scene: &SceneData) -> bool {
     }
     let (skipped, panes, _) = rows(scene);
     let (table, other) = (&scene.table, &before.table);
-    // Panes come after what is wet.
-    let beyond = panes.end.max(skipped.end);
-    let between = skipped.end..if panes.is_empty() { beyond } else { panes.start };
-    if table[..skipped.start] != other[..skipped.start]
-        || table[between.clone()] != other[between]
-        || table[beyond..] != other[beyond..]
-    {
+    // In their order in the table.
+    let mut first = 0;
+    for part in [&skipped, &panes].into_iter().filter(|part| !part.is_empty()) {
+        if table[first..part.start] != other[first..part.start] {
+            return false;
+        }
+        first = part.end;
+    }
+    if table[first..] != other[first..] {
         return false;
     }
     if skipped.is_empty() {

@@ -383,10 +383,11 @@ impl SceneView<'_> {
             }
             self.path_show(&mut path, &meeting, &light, towards, layer, throughput);
             under = false;
-            throughput *= path_open(&found);
+            let open = path_open(&found);
+            throughput *= open;
             if let Some(drop) = drop {
                 width *= 1.0 + (PUDDLE_WATER_INDEX - 1.0) * drop.bend * (near - frame.nearest);
-                throughput *= glazing_open(&found, meeting.plan.gloss, towards, path_open(&found));
+                throughput *= glazing_open(&found, meeting.plan.gloss, towards, open);
                 let facet = if found.facet.dot(drop.normal) > 0.0 { found.facet } else { -found.facet };
                 towards = glazing_through(towards, drop.normal, facet);
                 start = found.position;

@@ -227,9 +227,7 @@ impl SceneData {
     pub fn set_wetness(&mut self, wetness: Option<&SceneWetness>) {
         let first = (self.lights + self.light_count * SCENE_LIGHT_ROWS) as usize;
         if (wetness.is_some()) != (self.wetness > 0) {
-            self.table.truncate(first);
-            (self.puddles, self.puddle_count, self.pane) = (0, 0, 0);
-            (self.wetness, self.glazing) = (0, 0);
+            self.cut_table(first);
         }
         let Some(wetness) = wetness else { return };
         let words = |v: Vec4| v.to_array().map(f32::to_bits);
@@ -258,8 +256,7 @@ impl SceneData {
         let first = (self.wetness + WET_HEAD_ROWS) as usize + coat_rows().len();
         let known = self.glazing_rows().len();
         if known != rows.len() {
-            self.table.truncate(first);
-            (self.puddles, self.puddle_count, self.pane) = (0, 0, 0);
+            self.cut_table(first);
             self.glazing = if rows.is_empty() { 0 } else { first as u32 };
             self.table.extend(rows);
         } else if self.glazing > 0 {
@@ -360,9 +357,9 @@ impl SceneView<'_> {
 }
 
 /// Rows of the coat's reflectance: per roughness those of the cosines, two in a row, then the mean.
-fn coat_rows() -> Vec<[u32; 4]> {
+fn coat_rows() -> &'static [[u32; 4]] {
     static ROWS: OnceLock<Vec<[u32; 4]>> = OnceLock::new();
-    ROWS.get_or_init(|| (0..=WET_COAT_STEPS as u16).flat_map(coat_of).collect()).clone()
+    ROWS.get_or_init(|| (0..=WET_COAT_STEPS as u16).flat_map(coat_of).collect())
 }
 
 /// Rows of a roughness, in steps.

@@ -190,7 +190,7 @@ fn glazing_age(place: GlazingPlace, at: vec2f, pane: GlazingPane) -> f32 {
     return max(age, 0.0);
 }
 
-// Height of a drop over its middle's edge at an offset; below 0 beside it.
+// Height of a drop over the plane of its edge at an offset, m; below 0 beside it.
 fn glazing_cap(offset: vec2f, radius: f32) -> f32 {
     let sphere = radius / GLAZING_SINE;
     let rest = sphere * sphere - dot(offset, offset);
@@ -324,7 +324,7 @@ fn glazing_water(place: GlazingPlace, found: GlazingDrop, facet: vec3f, footprin
 // Water on a surface of a material, seen along a direction: its normal is toward the rain.
 fn glazing_find(surface: Surface, material: u32, footprint: f32, wet: RenderWet) -> GlazingWater {
     let rain = glazing_load();
-    // Toward the side that the rain comes away.
+    // Toward the side that the rain comes from.
     let facet = select(-surface.facet, surface.facet, dot(surface.facet, wet.towards) > 0.0);
     let none = GlazingWater(facet, 0.0);
     let flux = dot(facet, wet.towards) / max(wet.towards.y, 0.05);
@@ -369,7 +369,7 @@ fn glazing_open(surface: Surface, gloss: vec3f, along: vec3f, open: vec3f) -> ve
 }
 
 // Direction beyond a pane of a ray that has met water of a normal on a facet that both are toward the rain. What is reflected within goes
-// back to where it came away.
+// back to where it came from.
 fn glazing_through(along: vec3f, normal: vec3f, facet: vec3f) -> vec3f {
     let inward = dot(along, facet) < 0.0;
     var first = select(-facet, normal, inward);

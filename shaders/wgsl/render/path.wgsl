@@ -522,9 +522,11 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                 let hit = surface_hit(from_position, ray.along, nearest, BVH_FAR);
                 if hit.distance < 0.0 {
                     if turn == 0u {
-                        var beyond = sky_level(0u, towards) + scene_suns(towards);
+                        var beyond = vec3f(0.0);
                         if WET_SURFACES && GLAZING_PANES && width > cone {
                             beyond = sky_cone(towards, width);
+                        } else {
+                            beyond = sky_level(0u, towards) + scene_suns(towards);
                         }
                         path.radiance += throughput * beyond;
                         return path;
@@ -713,10 +715,11 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
         }
         path = path_show(path, meeting, light, towards, layer, throughput);
         under = false;
-        throughput *= path_open(surface);
+        let open = path_open(surface);
+        throughput *= open;
         if WET_SURFACES && GLAZING_PANES && drop.bend > 0.0 {
             width *= 1.0 + (PUDDLE_WATER_INDEX - 1.0) * drop.bend * (near - render_frame.nearest);
-            throughput *= glazing_open(surface, meeting.plan.gloss, towards, path_open(surface));
+            throughput *= glazing_open(surface, meeting.plan.gloss, towards, open);
             let facet = select(-surface.facet, surface.facet, dot(surface.facet, drop.normal) > 0.0);
             towards = glazing_through(towards, drop.normal, facet);
             start = surface.position;
