@@ -28,7 +28,7 @@ pub use light::{Light, LightKind, PlacedLight};
 pub use material::{AlphaMode, Material, TextureRef};
 pub use mesh::{Bounds, Mesh, MorphTarget, Primitive};
 pub use node::{Local, Node, Parts};
-pub use pose::{Instance, Play, Pose};
+pub use pose::{Instance, Placed, Play, Pose};
 pub use skin::Skin;
 pub use skinning::{SkinnedPrimitive, skin_primitive};
 pub use texture::{Encoding, Filter, Sampler, Texture, Wrap};

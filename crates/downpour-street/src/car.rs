@@ -4,8 +4,10 @@
 
 use glam::{Vec2, Vec3};
 
+use crate::error::StreetError;
 use crate::material::Material;
 use crate::mesh::{BELOW, Mesh, plain, tinted};
+use crate::model::{Lamp, Piece, Placement};
 use crate::noise::{hash, mix, smooth};
 
 /// Axles, front and rear, and radius of the wheels.
@@ -30,6 +32,16 @@ pub(crate) const PAINTS: [[f32; 3]; 6] = [
     [0.028, 0.029, 0.031],
     [0.10, 0.135, 0.12],
 ];
+
+/// A dipped beam: luminous intensity on its axis, and half angles of its cone, degrees. Its axis falls by 10 degrees, so that the cone
+/// ends one degree above level, as the cutoff of a real one does: it lights the road and not who comes along it.
+const BEAM_CD: f32 = 3500.0;
+const BEAM_DEG: [f32; 2] = [7.0, 11.0];
+const BEAM_FALL: f32 = 0.176;
+/// Distance of the lamps from the middle of the car.
+const BEAM_ASIDE_M: f32 = 0.66;
+/// A pair of them lights the road so far.
+const BEAM_RANGE_M: f32 = 80.0;
 
 /// Smooth function through points with rising arguments: cubic, with slopes of central differences.
 fn through(points: &[[f32; 2]], x: f32) -> f32 {
@@ -211,8 +223,8 @@ fn body(mesh: &mut Mesh) {
     mesh.block(plain(Material::Trim), [-0.72, 0.22, -1.75], [1.44, 0.45, 3.40]);
 }
 
-fn wheel(mesh: &mut Mesh, x: f32, z: f32) {
-    let out = x.signum();
+/// A wheel around its hub, its outer side toward +x, or -x.
+fn wheel(out: f32) -> Mesh {
     let mut wheel = Mesh::default();
     // Turned about the vertical, then laid on its side.
     let (r, half) = (WHEEL_M, 0.10);
@@ -258,11 +270,11 @@ fn wheel(mesh: &mut Mesh, x: f32, z: f32) {
     for part in wheel.parts.values_mut() {
         for vertex in &mut part.vertices {
             let lay = |v: Vec3| Vec3::new(v.y * out, -v.x * out, v.z);
-            vertex.position = lay(vertex.position) + Vec3::new(x, WHEEL_M, z);
+            vertex.position = lay(vertex.position);
             vertex.normal = lay(vertex.normal);
         }
     }
-    mesh.add(&wheel, [0.0; 3], 0.0);
+    wheel
 }
 
 /// The housing of a mirror, rounded, its glass to the rear.
@@ -327,11 +339,14 @@ fn plate(mesh: &mut Mesh, center: Vec3, facing: f32, number: u32) {
     }
 }
 
-fn fittings(mesh: &mut Mesh, number: u32) {
+/// Distance of the hubs from the middle of the car.
+const HUB_M: f32 = 0.765;
+
+fn fittings(mesh: &mut Mesh, number: u32, has_wheels: bool) {
     for side in [-1.0f32, 1.0] {
         let x = side;
-        for z in AXLES_M {
-            wheel(mesh, x * 0.765, z);
+        for z in AXLES_M.into_iter().filter(|_| has_wheels) {
+            mesh.add(&wheel(side), [x * HUB_M, WHEEL_M, z], 0.0);
         }
         // The lamps extend around the corners onto nose and tail.
         let mut cluster = |material: Material, y: [f32; 2], x: [f32; 2], z: f32| {
@@ -382,9 +397,13 @@ fn fittings(mesh: &mut Mesh, number: u32) {
 
 /// The car in one of [`PAINTS`].
 pub(crate) fn car(paint: usize) -> Mesh {
+    painted(paint, true)
+}
+
+fn painted(paint: usize, has_wheels: bool) -> Mesh {
     let mut mesh = Mesh::default();
     body(&mut mesh);
-    fittings(&mut mesh, paint as u32);
+    fittings(&mut mesh, paint as u32, has_wheels);
     if let Some(part) = mesh.parts.get_mut(&Material::CarPaint) {
         for vertex in &mut part.vertices {
             // Dust of the road on the lower parts.
@@ -394,6 +413,78 @@ pub(crate) fn car(paint: usize) -> Mesh {
         }
     }
     mesh
+}
+
+/// A car that drives: its lamps burn at night, and its wheels roll.
+///
+/// It stands on y = 0 and looks along +z. In glTF its wheels turn in the animation `roll` as at 1 m/s, so that the speed of that
+/// animation is the speed of the car in m/s.
+#[derive(Clone, Debug)]
+pub struct Car {
+    pieces: Vec<Piece>,
+    lamps: Vec<Lamp>,
+}
+
+impl Car {
+    /// Number of paints.
+    pub const PAINTS: usize = PAINTS.len();
+
+    /// The car in one of its paints: gray, blue, red, white, black, green.
+    ///
+    /// # Errors
+    /// [`StreetError::Setting`] for a paint from [`Car::PAINTS`] on.
+    pub fn new(paint: usize) -> Result<Self, StreetError> {
+        if paint >= PAINTS.len() {
+            return Err(StreetError::Setting {
+                file: "car".to_owned(),
+                key: "paint".to_owned(),
+                found: paint.to_string(),
+                allowed: format!("0 to {}", PAINTS.len() - 1),
+            });
+        }
+        let mut body = painted(paint, false);
+        for (off, lit) in
+            [(Material::Headlight, Material::HeadlightLit), (Material::TailLight, Material::TailLightLit)]
+        {
+            if let Some(part) = body.parts.remove(&off) {
+                body.parts.insert(lit, part);
+            }
+        }
+        body.clean();
+        let mut wheel = wheel(1.0);
+        wheel.clean();
+        let hub = |side: f32, z: f32| {
+            Placement::new(side * HUB_M, WHEEL_M, z, if side < 0.0 { 180.0 } else { 0.0 })
+        };
+        let hubs = [-1.0, 1.0].into_iter().flat_map(|side| AXLES_M.map(|z| hub(side, z))).collect();
+        let wheels =
+            Piece { name: "wheel".to_owned(), mesh: wheel, copies: hubs, rolls_on_m: Some(WHEEL_M) };
+        let beam = |side: f32| Lamp {
+            name: "dipped beam",
+            position: [side * BEAM_ASIDE_M, 0.66, NOSE_M - 0.08],
+            direction: Some([0.0, -BEAM_FALL, 1.0]),
+            cone_deg: BEAM_DEG,
+            color: [1.0, 0.93, 0.82],
+            intensity_cd: BEAM_CD,
+            range_m: BEAM_RANGE_M,
+        };
+        Ok(Self {
+            pieces: vec![Piece::single("car", body), wheels],
+            lamps: vec![beam(-1.0), beam(1.0)],
+        })
+    }
+
+    /// Body and wheels.
+    #[must_use]
+    pub fn pieces(&self) -> &[Piece] {
+        &self.pieces
+    }
+
+    /// Dipped beams, which burn at night.
+    #[must_use]
+    pub fn lamps(&self) -> &[Lamp] {
+        &self.lamps
+    }
 }
 
 #[cfg(test)]
@@ -415,5 +506,19 @@ mod tests {
         assert!((4.1..4.3).contains(&size.z) && (1.7..2.1).contains(&size.x), "{size}");
         assert!((1.4..1.5).contains(&size.y) && low.y.abs() < 0.01, "{low} {size}");
         assert!(mesh.triangle_count() < 8000, "{}", mesh.triangle_count());
+    }
+
+    /// One that drives is the same car, with its wheels beside it and its lamps lit.
+    #[test]
+    fn a_car_that_drives_is_the_car() {
+        let (parked, driving) = (car(2), Car::new(2).expect("a paint"));
+        let [body, wheel] = driving.pieces() else { panic!("{:?}", driving.pieces().len()) };
+        let mut parked = parked;
+        parked.clean();
+        assert_eq!(parked.triangle_count(), body.mesh.triangle_count() + 4 * wheel.mesh.triangle_count());
+        assert_eq!(wheel.copies.len(), 4);
+        assert!(body.mesh.parts.contains_key(&Material::HeadlightLit));
+        assert!(!body.mesh.parts.contains_key(&Material::TailLight));
+        assert!(Car::new(Car::PAINTS).is_err());
     }
 }

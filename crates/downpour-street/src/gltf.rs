@@ -1,14 +1,15 @@
-//! A street as glTF 2.0: documents for day and night that share one binary file, or one .glb.
+//! A street or a car as glTF 2.0: documents for day and night that share one binary file, or one .glb.
 //!
 //! Positions and texture coordinates are floats, normals and tints integers (`KHR_mesh_quantization`).
 
 use glam::Vec3;
 use serde_json::{Value, json};
 
+use crate::car::Car;
 use crate::error::StreetError;
 use crate::material::Material;
 use crate::mesh::{Part, Vertex, turn};
-use crate::model::Lamp;
+use crate::model::{Lamp, Piece, Placement};
 use crate::street::Street;
 use crate::textures::textures;
 
@@ -40,26 +41,19 @@ struct Buffer {
     materials: Vec<Material>,
 }
 
+/// What a file is made of.
+#[derive(Clone, Copy)]
+struct Parts<'a> {
+    pieces: &'a [Piece],
+    lamps: &'a [Lamp],
+}
+
 impl Street {
     /// `NAME.gltf`, `NAME_night.gltf` if it has lamps, and `NAME.bin`; textures are expected in the folder `textures` beside them
     /// ([`textures`]).
     #[must_use]
     pub fn to_gltf(&self, name: &str) -> Vec<File> {
-        let buffer = lay_out(self);
-        let uri = format!("{name}.bin");
-        let mut files = Vec::new();
-        let is_lit = !self.lamps().is_empty();
-        for (end, time) in [("", TimeOfDay::Day), ("_night", TimeOfDay::Night)] {
-            if time == TimeOfDay::Night && !is_lit {
-                continue;
-            }
-            let (mut root, images) = document(self, &buffer, time);
-            root["images"] = images.iter().map(|name| json!({"uri": format!("textures/{name}")})).collect();
-            root["buffers"] = json!([{"uri": uri, "byteLength": buffer.bytes.len()}]);
-            files.push(File { name: format!("{name}{end}.gltf"), bytes: format!("{root}\n").into_bytes() });
-        }
-        files.push(File { name: uri, bytes: buffer.bytes });
-        files
+        self.parts().to_gltf(name)
     }
 
     /// The street in one file, with its textures.
@@ -67,18 +61,73 @@ impl Street {
     /// # Errors
     /// [`StreetError::Texture`] if a texture cannot be encoded.
     pub fn to_glb(&self, time: TimeOfDay) -> Result<Vec<u8>, StreetError> {
+        self.parts().to_glb(time)
+    }
+
+    fn parts(&self) -> Parts<'_> {
+        Parts { pieces: self.pieces(), lamps: self.lamps() }
+    }
+}
+
+impl Car {
+    /// `NAME.gltf`, `NAME_night.gltf` and `NAME.bin`. It has no textures.
+    #[must_use]
+    pub fn to_gltf(&self, name: &str) -> Vec<File> {
+        self.parts().to_gltf(name)
+    }
+
+    /// The car in one file.
+    ///
+    /// # Errors
+    /// [`StreetError::Texture`] if a texture cannot be encoded.
+    pub fn to_glb(&self, time: TimeOfDay) -> Result<Vec<u8>, StreetError> {
+        self.parts().to_glb(time)
+    }
+
+    fn parts(&self) -> Parts<'_> {
+        Parts { pieces: self.pieces(), lamps: self.lamps() }
+    }
+}
+
+impl Parts<'_> {
+    fn to_gltf(self, name: &str) -> Vec<File> {
         let mut buffer = lay_out(self);
-        let textures = textures()?;
-        let (mut root, images) = document(self, &buffer, time);
-        let mut listed = Vec::new();
-        for name in images {
-            let Some(texture) = textures.iter().find(|texture| texture.name == name) else { continue };
-            let kind = if name.ends_with(".png") { "image/png" } else { "image/jpeg" };
-            listed.push(
-                json!({"name": name, "mimeType": kind, "bufferView": buffer.view(&texture.bytes, None)}),
-            );
+        let rolling = roll(self, &mut buffer);
+        let uri = format!("{name}.bin");
+        let mut files = Vec::new();
+        let is_lit = !self.lamps.is_empty();
+        for (end, time) in [("", TimeOfDay::Day), ("_night", TimeOfDay::Night)] {
+            if time == TimeOfDay::Night && !is_lit {
+                continue;
+            }
+            let (mut root, images) = document(self, &buffer, rolling.as_ref(), time);
+            if !images.is_empty() {
+                root["images"] =
+                    images.iter().map(|name| json!({"uri": format!("textures/{name}")})).collect();
+            }
+            root["buffers"] = json!([{"uri": uri, "byteLength": buffer.bytes.len()}]);
+            files.push(File { name: format!("{name}{end}.gltf"), bytes: format!("{root}\n").into_bytes() });
         }
-        root["images"] = json!(listed);
+        files.push(File { name: uri, bytes: buffer.bytes });
+        files
+    }
+
+    fn to_glb(self, time: TimeOfDay) -> Result<Vec<u8>, StreetError> {
+        let mut buffer = lay_out(self);
+        let rolling = roll(self, &mut buffer);
+        let (mut root, images) = document(self, &buffer, rolling.as_ref(), time);
+        if !images.is_empty() {
+            let textures = textures()?;
+            let mut listed = Vec::new();
+            for name in images {
+                let Some(texture) = textures.iter().find(|texture| texture.name == name) else { continue };
+                let kind = if name.ends_with(".png") { "image/png" } else { "image/jpeg" };
+                listed.push(
+                    json!({"name": name, "mimeType": kind, "bufferView": buffer.view(&texture.bytes, None)}),
+                );
+            }
+            root["images"] = json!(listed);
+        }
         root["bufferViews"] = json!(buffer.views);
         root["buffers"] = json!([{"byteLength": buffer.bytes.len()}]);
         let mut text = root.to_string().into_bytes();
@@ -98,9 +147,49 @@ impl Street {
     }
 }
 
-fn lay_out(street: &Street) -> Buffer {
+/// Number of keys of a turn of a wheel: each is a quarter of it from the one before.
+const TURN_KEYS: usize = 5;
+
+/// Animation of the wheels, as at 1 m/s.
+fn roll(parts: Parts<'_>, buffer: &mut Buffer) -> Option<Value> {
+    let (mut samplers, mut channels) = (Vec::new(), Vec::new());
+    let mut node = 0;
+    for piece in parts.pieces {
+        let Some(radius) = piece.rolls_on_m else {
+            node += piece.copies.len();
+            continue;
+        };
+        let quarter_s = std::f32::consts::FRAC_PI_2 * radius;
+        let times: Vec<f32> = (0..TURN_KEYS).map(|key| key as f32 * quarter_s).collect();
+        let floats = |values: &[f32]| values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>();
+        let view = buffer.view(&floats(&times), None);
+        let input = buffer.accessor(json!({
+            "bufferView": view, "componentType": 5126, "count": TURN_KEYS, "type": "SCALAR",
+            "min": [times[0]], "max": [times[TURN_KEYS - 1]],
+        }));
+        for copy in &piece.copies {
+            let turns: Vec<f32> = (0..TURN_KEYS).flat_map(|key| rolled(*copy, 90.0 * key as f32)).collect();
+            let view = buffer.view(&floats(&turns), None);
+            let output = buffer.accessor(
+                json!({"bufferView": view, "componentType": 5126, "count": TURN_KEYS, "type": "VEC4"}),
+            );
+            channels.push(json!({"sampler": samplers.len(), "target": {"node": node, "path": "rotation"}}));
+            samplers.push(json!({"input": input, "output": output}));
+            node += 1;
+        }
+    }
+    (!channels.is_empty()).then(|| json!({"name": "roll", "samplers": samplers, "channels": channels}))
+}
+
+/// Rotation of a copy that has rolled by an angle in degrees toward +z: its own turn first, then about x.
+fn rolled(copy: Placement, degrees: f32) -> [f32; 4] {
+    let ((c, s), (d, t)) = (turn(degrees / 2.0), turn(copy.turn_deg / 2.0));
+    [s * d, c * t, s * t, c * d]
+}
+
+fn lay_out(parts: Parts<'_>) -> Buffer {
     let mut all = Buffer::default();
-    for piece in street.pieces() {
+    for piece in parts.pieces {
         let mut primitives = Vec::new();
         for (&material, part) in &piece.mesh.parts {
             let index = all.materials.iter().position(|&m| m == material).unwrap_or_else(|| {
@@ -226,7 +315,12 @@ fn short(v: f32) -> f64 {
 }
 
 /// The document without images and buffers, and the names of its images.
-fn document(street: &Street, buffer: &Buffer, time: TimeOfDay) -> (Value, Vec<&'static str>) {
+fn document(
+    parts: Parts<'_>,
+    buffer: &Buffer,
+    rolling: Option<&Value>,
+    time: TimeOfDay,
+) -> (Value, Vec<&'static str>) {
     let is_night = time == TimeOfDay::Night;
     let mut images: Vec<&'static str> = Vec::new();
     let mut texture = |name: &'static str| {
@@ -238,12 +332,12 @@ fn document(street: &Street, buffer: &Buffer, time: TimeOfDay) -> (Value, Vec<&'
     let materials: Vec<Value> =
         buffer.materials.iter().map(|&material| material.gltf(is_night, &mut texture)).collect();
     let mut nodes = Vec::new();
-    for (index, piece) in street.pieces().iter().enumerate() {
+    for (index, piece) in parts.pieces.iter().enumerate() {
         for copy in &piece.copies {
             nodes.push(node(json!({"mesh": index}), copy.position, yaw(copy.turn_deg)));
         }
     }
-    let lamps: &[Lamp] = if is_night { street.lamps() } else { &[] };
+    let lamps: &[Lamp] = if is_night { parts.lamps } else { &[] };
     for (index, lamp) in lamps.iter().enumerate() {
         let extension = json!({"name": lamp.name, "extensions": {"KHR_lights_punctual": {"light": index}}});
         nodes.push(node(extension, lamp.position, lamp.direction.map_or([0.0, 0.0, 0.0, 1.0], aim)));
@@ -266,7 +360,12 @@ fn document(street: &Street, buffer: &Buffer, time: TimeOfDay) -> (Value, Vec<&'
         "accessors": buffer.accessors,
         "bufferViews": buffer.views,
     });
-    root["textures"] = (0..images.len()).map(|source| json!({"source": source})).collect();
+    if !images.is_empty() {
+        root["textures"] = (0..images.len()).map(|source| json!({"source": source})).collect();
+    }
+    if let Some(rolling) = rolling {
+        root["animations"] = json!([rolling]);
+    }
     if !lamps.is_empty() {
         used.push("KHR_lights_punctual");
         root["extensions"] =

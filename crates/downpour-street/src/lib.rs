@@ -17,6 +17,7 @@ mod street;
 mod textures;
 mod tree;
 
+pub use car::Car;
 pub use error::StreetError;
 pub use gltf::{File, TimeOfDay};
 pub use ground::Hollow;

@@ -11,6 +11,8 @@ pub struct Piece {
     pub mesh: Mesh,
     /// Positions of its copies.
     pub copies: Vec<Placement>,
+    /// For wheels: their radius in meters. They roll about their x axis.
+    pub rolls_on_m: Option<f32>,
 }
 
 /// Position and turn about the vertical of a copy.
@@ -52,7 +54,7 @@ pub struct Lamp {
 impl Piece {
     /// A mesh with one copy at the origin.
     pub(crate) fn single(name: &str, mesh: Mesh) -> Self {
-        Self { name: name.to_owned(), mesh, copies: vec![Placement::default()] }
+        Self { name: name.to_owned(), mesh, copies: vec![Placement::default()], rolls_on_m: None }
     }
 
     /// Triangles of all copies.

@@ -59,7 +59,7 @@ impl Street {
         let cars = cars(settings, &ground, &mut plan);
         furnish(settings, &ground, &cars, &mut plan);
         let mut pieces: Vec<Piece> =
-            plan.copies.into_iter().map(|(name, (mesh, copies))| Piece { name, mesh, copies }).collect();
+            plan.copies.into_iter().map(|(name, (mesh, copies))| Piece { name, mesh, copies, rolls_on_m: None }).collect();
         for piece in &mut pieces {
             piece.mesh.clean();
         }
@@ -104,6 +104,12 @@ impl Street {
     #[must_use]
     pub fn hollows(&self) -> &[Hollow] {
         &self.hollows
+    }
+
+    /// Height of the carriageway at x and z, meters.
+    #[must_use]
+    pub fn road_height_m(&self, x_m: f32, z_m: f32) -> f32 {
+        Ground::new(&self.settings).road_height(x_m, z_m)
     }
 
     /// Parked cars.

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use downpour_scene::Budget;
-use downpour_scene::gltf::read_triangles;
+use downpour_scene::gltf::{read_scene, read_triangles};
 use downpour_street::{
-    LampEra, MAX_CARRIAGEWAY_M, MAX_PAVEMENT_M, MIN_CARRIAGEWAY_M, MIN_LENGTH_M, MIN_PAVEMENT_M, Material,
+    Car, LampEra, MAX_CARRIAGEWAY_M, MAX_PAVEMENT_M, MIN_CARRIAGEWAY_M, MIN_LENGTH_M, MIN_PAVEMENT_M, Material,
     Mesh, Part, Paving, Street, StreetError, StreetSettings, TimeOfDay,
 };
 use glam::Vec3;
@@ -238,4 +238,41 @@ fn lengths_beyond_the_ends_are_refused() {
     }
     let longest = Street::generate(&StreetSettings { length_m: 500.0, ..StreetSettings::default() }).unwrap();
     assert!(longest.triangle_count() < 3_000_000, "{}", longest.triangle_count());
+}
+
+/// Where a wheel touches the road it stands still while the car goes on: its lowest points go back at 1 m/s in the car, its highest
+/// ones forward, and its hubs stay. Both files of a car say so, and have its lamps by night.
+#[test]
+fn wheels_roll_at_a_meter_per_second() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let car = Car::new(1).expect("a car");
+    for file in car.to_gltf("car") {
+        std::fs::write(folder.path().join(file.name), file.bytes).expect("written");
+    }
+    let glb = folder.path().join("car.glb");
+    std::fs::write(&glb, car.to_glb(TimeOfDay::Night).expect("a file")).expect("written");
+    let files = [(folder.path().join("car.gltf"), 0), (folder.path().join("car_night.gltf"), 2), (glb, 2)];
+    for (path, lamps) in files {
+        let scene = read_scene(&path, &mut Budget::default()).expect("a scene");
+        assert!(scene.warnings.is_empty() && scene.textures.is_empty(), "{:?}", scene.warnings);
+        assert_eq!(scene.animations.iter().map(|one| one.name.as_str()).collect::<Vec<_>>(), ["roll"]);
+        assert_eq!(scene.pose(None, 0.0).lights.len(), lamps);
+        let radius = 0.315;
+        for time_s in [0.1, 0.7, 1.3, 1.9] {
+            let step_s = 0.01;
+            let (now, then) = (scene.pose(Some(0), time_s), scene.pose(Some(0), time_s + step_s));
+            let wheels = now.instances.iter().zip(&then.instances).filter(|(one, _)| one.world.translation.y > 0.3);
+            let mut count = 0;
+            for (one, next) in wheels {
+                count += 1;
+                assert!(one.world.translation.distance(next.world.translation) < 1e-6);
+                for (side, expected) in [(-radius, -1.0), (radius, 1.0)] {
+                    let rim = one.world.translation + glam::Vec3A::new(0.0, side, 0.0);
+                    let moved = next.world.transform_point3a(one.world.inverse().transform_point3a(rim)) - rim;
+                    assert!((moved.z / step_s - expected).abs() < 0.02, "{time_s} s, {side} m: {moved}");
+                }
+            }
+            assert_eq!(count, 4);
+        }
+    }
 }

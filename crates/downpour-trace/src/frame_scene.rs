@@ -19,7 +19,7 @@ use downpour_math::color::color_luminance;
 use downpour_math::in_range;
 use std::borrow::Cow;
 
-use downpour_scene::scene::{Play, Pose};
+use downpour_scene::scene::Pose;
 use downpour_sim::field::FallingDrop;
 use downpour_sim::view::View;
 use downpour_weather::{self as weather, Loaded, Reloaded, Weather};
@@ -110,7 +110,7 @@ impl FrameScene {
         check_size(weather.size)?;
         in_range("time", time_s, "s", &(-LATEST_S..=LATEST_S), 1.0, "-1e6 to 1e6")
             .map_err(RenderError::from)?;
-        let pose = posed(loaded, time_s);
+        let pose = loaded.pose(weather, time_s);
         check_cost(loaded, &pose)?;
         let seen = CameraView::of(weather, loaded, &pose, time_s);
         let anchor = seen.as_ref().map_or_else(|| middle(loaded, &pose), |seen| seen.eye);
@@ -161,7 +161,7 @@ impl FrameScene {
     /// # Errors
     /// [`FrameSceneError::TooFar`] over 1 km from what the buffers are relative to; as [`Viewpoint::axes`].
     pub fn seen_at(&self, weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, FrameSceneError> {
-        let Some(seen) = CameraView::of(weather, loaded, &posed(loaded, time_s), time_s) else {
+        let Some(seen) = CameraView::of(weather, loaded, &loaded.pose(weather, time_s), time_s) else {
             let mut frame_scene = Self { shutter_s: weather.drop_exposure_s(time_s), ..self.clone() };
             set_fov(&mut frame_scene.viewpoint, weather, time_s);
             set_time(&mut frame_scene.data, weather, loaded, self.origin, time_s);
@@ -213,7 +213,7 @@ impl FrameScene {
             frame_scene.has_sun = loaded.sun.is_some();
             frame_scene.lamps = (self.lamps + weather.lights.len()).saturating_sub(before.lights.len());
         }
-        let seen = CameraView::of(weather, loaded, &posed(loaded, time_s), time_s);
+        let seen = CameraView::of(weather, loaded, &loaded.pose(weather, time_s), time_s);
         if seen.is_some() || weather.camera.near.is_some() || weather.camera.far.is_some() {
             frame_scene.depth = depth(weather, seen.as_ref());
         }
@@ -240,7 +240,7 @@ impl FrameScene {
     /// # Errors
     /// As [`FrameScene::new`].
     pub fn view_at(weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<View, FrameSceneError> {
-        let Some(seen) = CameraView::of(weather, loaded, &posed(loaded, time_s), time_s) else {
+        let Some(seen) = CameraView::of(weather, loaded, &loaded.pose(weather, time_s), time_s) else {
             return Ok(Self::new(weather, loaded, time_s)?.view()?);
         };
         let origin = origin_near(seen.eye);
@@ -391,24 +391,12 @@ fn motion(weather: &Weather, loaded: &Loaded, time_s: f64) -> EyeMotion {
     let apart_s = weather.camera.shutter.max(MIN_INTERVAL_S);
     let at = |half: f64| {
         let time_s = time_s + half * apart_s;
-        CameraView::of(weather, loaded, &posed(loaded, time_s), time_s)
+        CameraView::of(weather, loaded, &loaded.pose(weather, time_s), time_s)
     };
     match (at(-0.5), at(0.5)) {
         (Some(before), Some(after)) => CameraView::motion(&before, &after, apart_s),
         _ => EyeMotion::default(),
     }
-}
-
-/// Pose of the scene when all animations that play have run for a time.
-fn posed(loaded: &Loaded, time_s: f64) -> Pose {
-    let play = |&animation: &usize| {
-        // Days have too many seconds for single precision; a round of a movement has not.
-        let length = loaded.scene.animations.get(animation).map_or(0.0, |a| f64::from(a.length_s()));
-        let time = if length > 0.0 { time_s.rem_euclid(length) } else { 0.0 };
-        Play { animation, time_s: time as f32 }
-    };
-    let plays: Vec<Play> = loaded.animations.iter().flatten().map(play).collect();
-    loaded.scene.pose_of(&plays)
 }
 
 /// Refuses what would take the machine away.

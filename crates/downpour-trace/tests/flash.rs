@@ -66,6 +66,7 @@ fn scene(poles: &[Vec3]) -> Loaded {
             ..Scene::default()
         },
         animations: Vec::new(),
+        moving: Vec::new(),
         sky: SkyMap::uniform([5.0; 3]),
         sun: Some(Sun { direction: [0.0, 1.0, 0.0], irradiance_rgb: [50.0; 3], angular_radius: 0.005 }),
         unscaled: None,

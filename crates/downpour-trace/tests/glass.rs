@@ -34,6 +34,7 @@ fn frame_scene(glass: &str) -> Result<(Weather, FrameScene), Box<dyn std::error:
     let loaded = Loaded {
         scene: Scene::default(),
         animations: Vec::new(),
+        moving: Vec::new(),
         sky,
         sun: None,
         unscaled: None,
@@ -333,6 +334,7 @@ fn a_pane_that_is_not_before_the_eye_is_refused() -> Outcome {
     let loaded = Loaded {
         scene: Scene::default(),
         animations: Vec::new(),
+        moving: Vec::new(),
         sky: SkyMap::uniform([1.0; 3]),
         sun: None,
         unscaled: None,

@@ -255,6 +255,7 @@ fn a_weathers_puddles_lie_on_its_stage() -> Outcome {
     let loaded = Loaded {
         scene: Scene::default(),
         animations: Vec::new(),
+        moving: Vec::new(),
         sky: SkyMap::uniform([1.0; 3]),
         sun: None,
         unscaled: None,

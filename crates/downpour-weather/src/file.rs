@@ -98,6 +98,8 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
     let (sun, sun_keys) = SunSource::checked(tables.sun.as_ref(), &sky, &positions)?;
     let camera_keys = tables.camera.keys(&positions)?;
     let camera = Camera::checked(&tables.camera, &camera_keys, &positions)?;
+    let models = numbered(&tables.model, |i, table| Model::checked(i, table, &positions))?;
+    let (models, model_keys): (Vec<_>, Vec<_>) = models.into_iter().unzip();
     let lamps = numbered(&tables.light, |i, table| Lamp::checked(i, table, &positions))?;
     let (lights, lamp_keys): (Vec<_>, Vec<_>) = lamps.into_iter().unzip();
     let (rain, rates) = Rain::checked(&tables.rain, &tables.layers, &positions)?;
@@ -138,14 +140,14 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         sun,
         sky,
         camera,
-        models: numbered(&tables.model, |i, table| Model::checked(i, table, &positions))?,
+        models,
         lights,
         wind_box: tables.wind_field.checked(&wind, &positions)?,
         wind,
         streaks,
         puddles,
         waves: tables.ripples.checked(&positions)?,
-        keys: WeatherKeys::new(rates, camera_keys, sky_keys, sun_keys, lamp_keys, fills, look_keys),
+        keys: WeatherKeys::new(rates, camera_keys, sky_keys, sun_keys, model_keys, lamp_keys, fills, look_keys),
         size: tables.output.size.map_or(default.size, |Exactly(size)| size.map(|Whole(side)| side)),
     })
 }

@@ -3,9 +3,10 @@
 use super::camera::CameraKeys;
 use super::lamps::LampKeys;
 use super::look::{LookKeys, drop_exposure_s};
+use super::models::ModelKeys;
 use super::rain::most;
 use super::sky::{SkyKeys, SunKeys};
-use super::{Look, PuddleFill, PuddleShape, Rain, Weather, WetnessAt};
+use super::{Look, Model, PuddleFill, PuddleShape, Rain, Weather, WetnessAt};
 use downpour_wind::Keyed;
 use std::borrow::Cow;
 
@@ -17,6 +18,8 @@ pub struct WeatherKeys {
     camera: CameraKeys,
     sky: Option<SkyKeys>,
     sun: Option<SunKeys>,
+    /// Index of each model that changes its place.
+    models: Vec<(usize, ModelKeys)>,
     /// Index of each lamp that changes.
     lamps: Vec<(usize, LampKeys)>,
     /// Index of each puddle whose fill changes.
@@ -30,17 +33,19 @@ impl WeatherKeys {
         camera: CameraKeys,
         sky: SkyKeys,
         sun: Option<SunKeys>,
+        models: Vec<ModelKeys>,
         lamps: Vec<LampKeys>,
         fills: Vec<Option<Keyed<f64>>>,
         look: LookKeys,
     ) -> Self {
-        let lamps = lamps.into_iter().enumerate();
+        let (models, lamps) = (models.into_iter().enumerate(), lamps.into_iter().enumerate());
         let fills = fills.into_iter().enumerate();
         Self {
             rate,
             camera: camera.moving(),
             sky: sky.moving(),
             sun: sun.and_then(SunKeys::moving),
+            models: models.filter_map(|(i, model)| Some((i, model.moving()?))).collect(),
             lamps: lamps.filter_map(|(i, lamp)| Some((i, lamp.moving()?))).collect(),
             fills: fills
                 .filter_map(|(i, fill)| Some((i, fill.filter(|fill| fill.keys().len() > 1)?)))
@@ -71,6 +76,16 @@ impl WeatherKeys {
     #[must_use]
     pub fn has_fov(&self) -> bool {
         self.camera.fov_deg.is_some()
+    }
+
+    /// Indices of the models that change their place.
+    pub fn models(&self) -> impl Iterator<Item = usize> {
+        self.models.iter().map(|&(index, _)| index)
+    }
+
+    /// True if models move in the same way as in another weather.
+    pub(super) fn has_models_of(&self, other: &Self) -> bool {
+        self.models == other.models
     }
 
     /// Indices of the lamps that change.
@@ -116,6 +131,11 @@ impl Weather {
         if let Some(sun) = &self.keys.sun {
             weather.sun = sun.at(time_s);
         }
+        for (index, model) in self.models_at(time_s) {
+            if let Some(place) = weather.models.get_mut(index) {
+                *place = model;
+            }
+        }
         for (index, keys) in &self.keys.lamps {
             if let Some(lamp) = weather.lights.get_mut(*index) {
                 *lamp = lamp.at(keys, time_s);
@@ -129,6 +149,12 @@ impl Weather {
             }
         }
         Cow::Owned(weather)
+    }
+
+    /// Models that change their place, by their index, at a time in seconds.
+    pub fn models_at(&self, time_s: f64) -> impl Iterator<Item = (usize, Model)> {
+        let keys = self.keys.models.iter();
+        keys.filter_map(move |(index, keys)| Some((*index, self.models.get(*index)?.clone().at(keys, time_s))))
     }
 
     /// Artistic multipliers at a time in seconds.

@@ -37,6 +37,7 @@ mod load;
 mod look;
 mod models;
 mod pane_map;
+mod pose;
 mod presets;
 mod puddle;
 mod quantity;

@@ -28,6 +28,8 @@ pub struct Loaded {
     pub scene: Scene,
     /// Animation of `scene` that plays, for each model.
     pub animations: Vec<Option<usize>>,
+    /// Models whose place has keys: for each, its index and the nodes of `scene` above its copies, in their order.
+    pub moving: Vec<(usize, Vec<usize>)>,
     /// Sky, rotated and scaled; without the sun, if that was extracted.
     pub sky: SkyMap,
     /// The sun, if there is one.
@@ -54,12 +56,6 @@ impl Loaded {
             Some((map, sun)) => scaled_sky(&now, map, sun.as_ref()),
             None => (formula(&now).unwrap_or_else(|| self.sky.clone()), directional(&now.sun)),
         })
-    }
-
-    /// True if an animation of a model plays.
-    #[must_use]
-    pub fn is_animated(&self) -> bool {
-        self.animations.iter().any(Option::is_some)
     }
 
     /// The files of another weather, where these are those of `before`: what both name in the same way is taken over, all else is read.
@@ -110,7 +106,9 @@ impl Reloaded {
     /// The parts in which two weathers differ.
     fn between(before: &Weather, weather: &Weather, is_animated: bool) -> Self {
         // Lamps are nodes of a scene that moves.
-        let models = before.models != weather.models || (is_animated && before.lights != weather.lights);
+        let models = before.models != weather.models
+            || !before.keys.has_models_of(&weather.keys)
+            || (is_animated && before.lights != weather.lights);
         let scales = before.keys.has_sky() || weather.keys.has_sky();
         let sky = models || scales || before.sky != weather.sky || before.sun != weather.sun;
         Self { models, sky }
@@ -189,10 +187,14 @@ pub fn load(weather: &Weather, files: &dyn Files, budget: &mut Budget) -> Result
     let (mut sky, sun) = lights_of_the_sky(weather, files, &mut remaining, &mut warnings, &mut unscaled)?;
     let mut scene = Scene { name: weather.name.clone(), ..Scene::default() };
     let mut animations = Vec::new();
-    let mut known = BTreeMap::new();
+    let (mut known, mut roots) = (BTreeMap::new(), Vec::new());
     for model in &weather.models {
+        let first = scene.roots.len();
         animations.push(add(&mut scene, model, &mut known, files, &mut remaining)?);
+        roots.push(first..scene.roots.len());
     }
+    let roots_of = |model: usize| scene.roots.get(roots.get(model)?.clone()).map(<[usize]>::to_vec);
+    let moving = weather.keys.models().filter_map(|model| Some((model, roots_of(model)?))).collect();
     check_panes(weather, &scene)?;
     for lamp in &weather.lights {
         remaining.take_nodes(1, "light").map_err(|error| error.in_file(&weather.name))?;
@@ -205,7 +207,7 @@ pub fn load(weather: &Weather, files: &dyn Files, budget: &mut Budget) -> Result
     let of_drops = drop_model.iter().flat_map(|model| model.warnings.clone()).collect();
     let warnings =
         [std::mem::take(&mut sky.warnings), scene.warnings.clone(), of_drops, warnings.finish()].concat();
-    Ok(Loaded { scene, animations, sky, sun, unscaled, masks, drop_model, warnings })
+    Ok(Loaded { scene, animations, moving, sky, sun, unscaled, masks, drop_model, warnings })
 }
 
 /// Triangles that drops are drawn as: all of them, or an error.

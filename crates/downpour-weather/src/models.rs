@@ -2,10 +2,12 @@
 
 use super::fault::Positions;
 use super::file::path;
-use super::quantity::{Exactly, In, PositionM, ScaleXyz, TurnDeg, Whole};
+use super::quantity::{AnimationSpeed, Exactly, In, PositionM, ScaleXyz, TurnDeg, Whole};
+use super::wind::keys::{VectorKeys, vector_or};
 use downpour_math::ops::f64 as ops;
 use downpour_scene::error::SceneError;
 use downpour_scene::uri::RelativePath;
+use downpour_wind::Keyed;
 use glam::{DAffine3, DQuat, DVec3};
 use serde::Deserialize;
 
@@ -17,9 +19,9 @@ const MAX_COPIES: u64 = 65_536;
 pub struct Model {
     /// The glTF file, inside the folder of the weather file or an asset root.
     pub file: RelativePath,
-    /// Position of its origin, in meters.
+    /// Position of its origin, in meters; with keys, that of time 0.
     pub translation: DVec3,
-    /// Rotation.
+    /// Rotation; with keys, that of time 0.
     pub rotation: DQuat,
     /// Scale.
     pub scale: DVec3,
@@ -27,6 +29,25 @@ pub struct Model {
     pub repeat: Repeat,
     /// Animation that plays; `None` for the first one.
     pub animation: Option<String>,
+    /// Speed of the animation, as a multiple of the model's own.
+    pub animation_speed: f64,
+}
+
+/// Position and rotation of a model over time.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct ModelKeys {
+    /// Meters.
+    translation: Keyed<DVec3>,
+    /// Degrees about x, y and z.
+    rotation_deg: Keyed<DVec3>,
+}
+
+impl ModelKeys {
+    /// The same, if any value changes.
+    pub(super) fn moving(self) -> Option<Self> {
+        let moves = [&self.translation, &self.rotation_deg].iter().any(|keyed| keyed.keys().len() > 1);
+        moves.then_some(self)
+    }
 }
 
 /// Copies on a lattice along the scene's axes.
@@ -71,11 +92,12 @@ impl Model {
 #[serde(deny_unknown_fields)]
 pub(super) struct ModelTable {
     file: String,
-    translation_m: Option<Exactly<In<PositionM>, 3>>,
-    rotation_deg: Option<Exactly<In<TurnDeg>, 3>>,
+    translation_m: Option<VectorKeys<PositionM>>,
+    rotation_deg: Option<VectorKeys<TurnDeg>>,
     scale: Option<ScaleXyz>,
     repeat: Option<RepeatTable>,
     animation: Option<String>,
+    animation_speed: Option<In<AnimationSpeed>>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]
@@ -87,11 +109,18 @@ struct RepeatTable {
 }
 
 impl Model {
+    /// The model at a time in seconds.
+    pub(super) fn at(self, keys: &ModelKeys, time_s: f64) -> Self {
+        let translation = keys.translation.at(time_s);
+        Self { translation, rotation: rotation(keys.rotation_deg.at(time_s).to_array()), ..self }
+    }
+
+    /// The model at time 0, and where it is over time.
     pub(super) fn checked(
         i: usize,
         table: &ModelTable,
         positions: &Positions<'_>,
-    ) -> Result<Self, SceneError> {
+    ) -> Result<(Self, ModelKeys), SceneError> {
         let key = |name: &str| format!("model[{i}].{name}");
         let repeat = table.repeat.map_or_else(Repeat::default, |repeat| Repeat {
             count: repeat.count.0.map(|Whole(count)| count),
@@ -102,16 +131,21 @@ impl Model {
             let found = format!("{copies} copies");
             return Err(positions.limit(&key("repeat.count"), found, format!("at most {MAX_COPIES}")));
         }
-        let vector =
-            |given: Option<Exactly<In<PositionM>, 3>>| given.map_or(DVec3::ZERO, |v| v.numbers().into());
-        Ok(Self {
+        let (translation, turn) = (table.translation_m.as_ref(), table.rotation_deg.as_ref());
+        let keys = ModelKeys {
+            translation: vector_or(translation, DVec3::ZERO, &key("translation_m"), positions)?,
+            rotation_deg: vector_or(turn, DVec3::ZERO, &key("rotation_deg"), positions)?,
+        };
+        let model = Self {
             file: path(&table.file, &key("file"), positions)?,
-            translation: vector(table.translation_m),
-            rotation: rotation(table.rotation_deg.map_or([0.0; 3], Exactly::numbers)),
+            translation: DVec3::ZERO,
+            rotation: DQuat::IDENTITY,
             scale: table.scale.map_or(DVec3::ONE, |ScaleXyz(scale)| scale.into()),
             repeat,
             animation: table.animation.clone(),
-        })
+            animation_speed: table.animation_speed.map_or(1.0, |speed| speed.0),
+        };
+        Ok((model.at(&keys, 0.0), keys))
     }
 }
 

@@ -79,6 +79,7 @@ ranges! {
     FocusM: 0.01, 1e7, "0.01 to 1e7 m";
     Amplitude: 0.0, 0.3, "0 to 0.3";
     Scale: 1e-6, 1e6, "1e-6 to 1e6";
+    AnimationSpeed: -1000.0, 1000.0, "-1000 to 1000";
     Part: -1e9, 1e9, "-1e9 to 1e9";
     ConeDeg: 0.0, 89.9, "0 to 89.9 degrees";
     SeepageMmH: 0.0, 1000.0, "0 to 1000 mm/h";

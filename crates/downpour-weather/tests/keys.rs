@@ -31,6 +31,11 @@ fov_deg = [[0, 20], [10, 60]]
 exposure_ev = [[0, 1], [10, 3]]
 aperture_mm = 20
 focus_m = [[0, 1], [10, 3]]
+[[model]]
+file = 'car.glb'
+translation_m = [[0, [0, 0, -40]], [10, [2, 0, 40]]]
+rotation_deg = [[0, [0, 0, 0]], [10, [0, 90, 0]]]
+repeat = { count = [2, 1, 1], step_m = [5, 0, 0] }
 [[light]]
 point = { position_m = [[0, [0, 1, 0]], [10, [4, 1, 0]]], color = [[0, [1, 1, 1]], [10, [0, 0, 0]]], intensity_cd = [[0, 10], [10, 30]] }
 [[light]]
@@ -67,6 +72,12 @@ fn every_key_moves_linearly() {
     let expected = DVec3::new(-(ops::cos(15f64.to_radians())), ops::sin(15f64.to_radians()), 0.0);
     assert!(forward.distance(expected) < 1e-12, "{forward}");
     assert!(!camera.path.as_ref().unwrap().is_still());
+    let ahead: Vec<DVec3> = now.models[0].transforms().map(|t| t.transform_point3(DVec3::Z)).collect();
+    let half = 0.5f64.sqrt();
+    for (found, x) in ahead.iter().zip([1.0, 6.0]) {
+        assert!(found.distance(DVec3::new(x + half, 0.0, half)) < 1e-12, "{found}");
+    }
+    assert_eq!(weather.models[0].translation, DVec3::new(0.0, 0.0, -40.0));
     let Lamp::Point { position, color, intensity_cd, .. } = now.lights[0] else { panic!("{:?}", now.lights) };
     assert_eq!((position, color, intensity_cd), (DVec3::new(2.0, 1.0, 0.0), DVec3::splat(0.5), 20.0));
     let Lamp::Spot { direction, intensity_cd, .. } = now.lights[1] else { panic!("{:?}", now.lights) };

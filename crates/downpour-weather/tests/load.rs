@@ -99,6 +99,49 @@ fn models_are_copied_with_their_movements() {
     );
 }
 
+/// A model whose place has keys is there with all its copies, its animation plays in it at its speed, and other entries of the same
+/// file stay where they are.
+#[test]
+fn a_model_moves_by_its_keys() {
+    let text = "[[model]]\nfile = 'models/swing.gltf'\nanimation = 'Swing'\nanimation_speed = 0.5\n\
+                translation_m = [[0, [0, 0, 0]], [4, [40, 0, 0]]]\nrotation_deg = [[0, [0, 0, 0]], [2, [0, 90, 0]]]\n\
+                repeat = { count = [1, 1, 2], step_m = [0, 0, 100] }\n\
+                [[model]]\nfile = 'models/swing.gltf'\nanimation = 'Rest'\ntranslation_m = [0, 7, 0]";
+    let weather = Weather::parse("w.toml", text).unwrap();
+    let loaded = load(&weather, &files(), &mut Budget::default()).unwrap();
+    assert!(loaded.is_animated());
+    let places = |time_s: f64| -> Vec<Vec3> {
+        loaded.pose(&weather, time_s).instances.iter().map(|one| one.world.translation.into()).collect()
+    };
+    // The swing is at z = 8 after one second of its own, here after two, when the model has turned that to x.
+    let swung = 1.999_999;
+    let cases = [
+        (-1.0, [Vec3::ZERO, Vec3::new(0.0, 0.0, 100.0)]),
+        (swung, [Vec3::new(28.0, 0.0, 0.0), Vec3::new(28.0, 0.0, 100.0)]),
+        (9.0, [Vec3::new(40.0, 0.0, 0.0), Vec3::new(40.0, 0.0, 100.0)]),
+    ];
+    for (time_s, expected) in cases {
+        let found = places(time_s);
+        let along = if time_s == swung { 1e-3 } else { 8.0 };
+        for (found, expected) in found.iter().zip(expected) {
+            assert!(found.distance(expected) < along, "{time_s} s: {found} {expected}");
+        }
+        assert_eq!(found[2], Vec3::new(0.0, 7.0, 0.0));
+    }
+    // Keys alone move a model, too; and other keys are another scene.
+    let still = |keys: &str| {
+        let text = format!("[[model]]\nfile = 'models/swing.gltf'\nanimation_speed = 0\ntranslation_m = {keys}");
+        Weather::parse("w.toml", &text).unwrap()
+    };
+    let (first, second) = (still("[[0, [0, 0, 0]], [1, [1, 0, 0]]]"), still("[[0, [0, 0, 0]], [1, [2, 0, 0]]]"));
+    assert_eq!(first.models, second.models);
+    let loaded = load(&first, &files(), &mut Budget::default()).unwrap();
+    assert_eq!(loaded.pose(&first, 0.5).instances[0].world.translation.x, 0.5);
+    let (again, reloaded) = loaded.reload(&first, &second, &files(), &mut Budget::default()).unwrap();
+    assert!(reloaded.models);
+    assert_eq!(again.pose(&second, 0.5).instances[0].world.translation.x, 1.0);
+}
+
 /// Two entries of the same file move independently.
 #[test]
 fn entries_of_the_same_file_share_its_meshes_and_not_its_movements() {

@@ -1,4 +1,4 @@
-//! The weather files of the street: one model by day or by night, nine looks.
+//! The weather files of the street: by day and by night, ten looks.
 
 use downpour_street::Street;
 
@@ -60,6 +60,37 @@ fn walk(exposure_ev: f32) -> String {
     )
 }
 
+/// Speed of the car that drives, m/s: 30 km/h.
+const CAR_M_S: f32 = 8.33;
+/// Its lane, and where it is at time 0 and at the last key.
+const CAR_X_M: f32 = -0.95;
+const CAR_Z_M: [f32; 2] = [-50.0, 12.0];
+/// Half the distances of its wheels from each other.
+const WHEELS_M: [f32; 2] = [0.765, 1.275];
+
+/// The street at night, and a car that comes along it.
+fn traffic(street: &Street) -> String {
+    let [first, last] = CAR_Z_M;
+    let steps = ((last - first) / 2.0) as usize;
+    let keys = (0..=steps).map(|step| {
+        let z = first + 2.0 * step as f32;
+        let wheels = [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)];
+        let height = |(a, b): (f32, f32)| {
+            street.road_height_m(CAR_X_M + a * WHEELS_M[0], z + b * WHEELS_M[1])
+        };
+        let mean = wheels.map(height).iter().sum::<f32>() / 4.0;
+        format!("[{:.3}, [{CAR_X_M}, {mean:.3}, {z}]]", (z - first) / CAR_M_S)
+    });
+    let keys: Vec<String> = keys.collect();
+    let rows: Vec<String> = keys.chunks(4).map(|row| row.join(", ")).collect();
+    let car = format!(
+        "[[model]]\nfile = \"models/car_night.gltf\"\n# Its wheels turn as at 1 m/s.\nanimation_speed = {CAR_M_S}\n\
+         # Keys: time, s, and place, m.\ntranslation_m = [\n    {},\n]\n",
+        rows.join(",\n    ")
+    );
+    format!("[[model]]\nfile = \"models/street_night.gltf\"\n\n{car}")
+}
+
 /// Puddles in the hollows of the street beyond a place along it, the nearest first, and one painted on the pavement.
 fn puddles(street: &Street, from_z: f32) -> String {
     let mut text = String::from("\n# The hollows of the model; the relief is that of even setts.\n");
@@ -99,6 +130,18 @@ pub(super) fn make(street: &Street) -> Vec<WeatherFile> {
             "A walk through the street at night, 20 s, for clips: render --frames.",
             night.clone(),
             &[&rain(60), NIGHT_SKY, &walk(NIGHT_EV), SIZE],
+        ),
+        file(
+            "drive.toml",
+            "A car that drives through the street at night, 7 s, for clips: render --frames.",
+            traffic(street),
+            &[
+                &rain(40),
+                SPRAY,
+                NIGHT_SKY,
+                &camera([-3.75, 1.5, -4.0], [-0.7, 1.25, -24.0], 50.0, NIGHT_EV),
+                SIZE,
+            ],
         ),
         file(
             "dusk.toml",
@@ -186,7 +229,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let street = Street::generate(&StreetSettings::default()).expect("a street");
         let files = make(&street);
-        assert_eq!(files.len(), 9);
+        assert_eq!(files.len(), 10);
         std::fs::write(
             folder.path().join("pavement_puddle.png"),
             downpour_street::puddle_mask().expect("a mask"),

@@ -1,9 +1,9 @@
-//! `downpour street`: an old European street from a seed, as one .glb.
+//! `downpour street`: an old European street from a seed, or a car for it, as one .glb.
 
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use downpour::street::{Street, StreetSettings, TimeOfDay};
+use downpour::street::{Car, Piece, Street, StreetSettings, TimeOfDay};
 
 use crate::failure::{Failure, INPUT, LIMIT, shown};
 use crate::interrupt::Interrupt;
@@ -24,6 +24,10 @@ pub(crate) struct StreetArguments {
     /// File of settings (TOML): length, width, paving, age, lamps, furniture, cars, shops.
     #[arg(long, value_name = "FILE.toml")]
     settings: Option<PathBuf>,
+    /// Make a car that drives instead: gray, blue, red, white, black or green, 0 to 5. It stands on y = 0 and looks along +z; the wheels
+    /// of its animation roll as at 1 m/s.
+    #[arg(long, value_name = "PAINT", conflicts_with_all = ["seed", "settings"])]
+    car: Option<usize>,
     /// Lamps burn and windows are lit.
     #[arg(long)]
     night: bool,
@@ -44,26 +48,39 @@ impl StreetArguments {
         if extension.as_deref() != Some("glb") {
             return Err(Failure::new(INPUT, format!("output {}; allowed: .glb", shown(&self.output))));
         }
+        let file = OutputFile::new(&self.output, self.overwrite)?;
+        let time = if self.night { TimeOfDay::Night } else { TimeOfDay::Day };
+        let (bytes, contents) = match self.car {
+            Some(paint) => {
+                let car = Car::new(paint)?;
+                let triangles: usize = car.pieces().iter().map(Piece::triangle_count).sum();
+                (car.to_glb(time)?, format!("a car, {triangles} triangles, {} lamps", car.lamps().len()))
+            }
+            None => self.street(time)?,
+        };
+        file.publish(&bytes, interrupt)?;
+        if !self.quiet {
+            stream::message(&format!("wrote {}: {contents}", shown(&self.output)));
+        }
+        Ok(())
+    }
+
+    /// The street and what is in it.
+    fn street(&self, time: TimeOfDay) -> Result<(Vec<u8>, String), Failure> {
         let mut settings = match &self.settings {
             Some(path) => read(path)?,
             None => StreetSettings::default(),
         };
         settings.seed = self.seed.unwrap_or(settings.seed);
-        let file = OutputFile::new(&self.output, self.overwrite)?;
         let street = Street::generate(&settings)?;
-        let bytes = street.to_glb(if self.night { TimeOfDay::Night } else { TimeOfDay::Day })?;
-        file.publish(&bytes, interrupt)?;
-        if !self.quiet {
-            stream::message(&format!(
-                "wrote {}: {} m, {} triangles, {} lamps, {} hollows",
-                shown(&self.output),
-                settings.length_m,
-                street.triangle_count(),
-                street.lamps().len(),
-                street.hollows().len()
-            ));
-        }
-        Ok(())
+        let contents = format!(
+            "{} m, {} triangles, {} lamps, {} hollows",
+            settings.length_m,
+            street.triangle_count(),
+            street.lamps().len(),
+            street.hollows().len()
+        );
+        Ok((street.to_glb(time)?, contents))
     }
 }
 

@@ -22,6 +22,22 @@ fn a_seed_is_a_street() {
 }
 
 #[test]
+fn a_car_is_a_model_that_drives() {
+    let glb = |arguments: &[&str]| {
+        let ended = Downpour::new(&[&["street", "-q", "-o", "car.glb"], arguments].concat()).run().succeeded();
+        std::fs::read(ended.folder.path().join("car.glb")).unwrap()
+    };
+    let car = glb(&["--car", "2", "--night"]);
+    assert!(car != glb(&["--car", "2"]) && car != glb(&["--car", "3", "--night"]));
+    let text = "[[model]]\nfile = \"car.glb\"\nanimation_speed = 8\ntranslation_m = [[0, [0, 0, 0]], [1, [0, 0, 8]]]\n";
+    let check = Downpour::new(&["check", "w.toml", "--json"]).with_file("car.glb", car);
+    let json = check.with_file("w.toml", text).run().succeeded().json();
+    assert_eq!((&json["lamps"], &json["animations_playing"][0]), (&2.into(), &"roll".into()), "{json}");
+    Downpour::new(&["street", "--car", "6", "-o", "car.glb"]).run().failed(2, &["paint: 6", "allowed: 0 to 5"]);
+    Downpour::new(&["street", "--car", "1", "--seed", "1", "-o", "car.glb"]).run().failed(2, &["--seed"]);
+}
+
+#[test]
 fn bad_settings_and_names_are_refused() {
     let refused = |text: &str, output: &str, code: i32, words: &[&str]| {
         let run = Downpour::new(&["street", "--settings", "s.toml", "-o", output]).with_file("s.toml", text);

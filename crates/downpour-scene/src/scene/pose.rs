@@ -23,6 +23,15 @@ pub struct Play {
     pub time_s: f32,
 }
 
+/// A node that is somewhere else than its scene says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placed {
+    /// The node.
+    pub node: usize,
+    /// From the node to its parent, instead of its own transform.
+    pub transform: DAffine3,
+}
+
 /// The state of a scene at a time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pose {
@@ -107,6 +116,12 @@ impl Scene {
     /// property, the later in the list wins.
     #[must_use]
     pub fn pose_of(&self, plays: &[Play]) -> Pose {
+        self.pose_with(plays, &[])
+    }
+
+    /// As [`Scene::pose_of`], with some nodes in other places. Animations that move such a node have no effect on it.
+    #[must_use]
+    pub fn pose_with(&self, plays: &[Play], places: &[Placed]) -> Pose {
         let mut locals: Vec<Local> = self.nodes.iter().map(|node| node.local).collect();
         let mut weights: Vec<Option<Vec<f32>>> = vec![None; self.nodes.len()];
         let mut value = Vec::new();
@@ -124,6 +139,12 @@ impl Scene {
                 }
             }
         }
+        let mut locals: Vec<DAffine3> = locals.iter().map(Local::matrix).collect();
+        for place in places {
+            if let Some(local) = locals.get_mut(place.node) {
+                *local = place.transform;
+            }
+        }
         let (world, drawn) = self.walk(&locals);
         let mut pose = Pose { world, ..Pose::default() };
         for node in drawn {
@@ -134,12 +155,12 @@ impl Scene {
 
     /// Nodes below the roots, in the order of the walk.
     pub(crate) fn drawn(&self) -> Vec<usize> {
-        let locals: Vec<Local> = self.nodes.iter().map(|node| node.local).collect();
+        let locals: Vec<DAffine3> = self.nodes.iter().map(|node| node.local.matrix()).collect();
         self.walk(&locals).1
     }
 
     /// World matrices of all nodes, and the nodes below the roots in the order of the walk.
-    fn walk(&self, locals: &[Local]) -> (Vec<DAffine3>, Vec<usize>) {
+    fn walk(&self, locals: &[DAffine3]) -> (Vec<DAffine3>, Vec<usize>) {
         let mut world: Vec<Option<DAffine3>> = vec![None; self.nodes.len()];
         let mut drawn = Vec::new();
         let mut open: Vec<(usize, DAffine3)> =
@@ -165,7 +186,7 @@ impl Scene {
             };
             // Each node is visited once, even with invalid links in a scene made by hand.
             let (Some(slot @ None), Some(local)) = (world.get_mut(node), locals.get(node)) else { continue };
-            let matrix = product(&parent, &local.matrix());
+            let matrix = product(&parent, local);
             *slot = Some(matrix);
             if in_scene {
                 drawn.push(node);

@@ -42,6 +42,7 @@ fn loaded(scene: Scene) -> Loaded {
     Loaded {
         scene,
         animations: Vec::new(),
+        moving: Vec::new(),
         sky,
         sun: None,
         unscaled: None,
