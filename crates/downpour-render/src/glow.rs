@@ -55,10 +55,10 @@ pub struct GlowDiffraction {
 }
 
 impl Glow {
-    /// The glow of a weather before unresolved and drawn rain. Rain whose extinction counts diffracted light as lost diffracts none.
+    /// The glow of a weather at a time in seconds, before unresolved and drawn rain. Rain whose extinction counts diffracted light as lost diffracts none.
     #[must_use]
-    pub fn of_weather(weather: &Weather, medium: &RainMedium) -> Self {
-        let glow = &weather.glow;
+    pub fn of_weather(weather: &Weather, medium: &RainMedium, time_s: f64) -> Self {
+        let glow = weather.glow_at(time_s);
         let is_kept = weather.rain.extinction == downpour_weather::RainExtinction::Camera;
         let diffraction = medium.mean_diameter_m().filter(|_| glow.has_diffraction && is_kept);
         Self {

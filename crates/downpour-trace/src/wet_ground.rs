@@ -115,6 +115,11 @@ impl WetGround {
     /// # Errors
     /// As [`WetGround::new`].
     pub fn advance(&mut self, time_s: f64) -> Result<(), PuddleError> {
+        for (index, (_, look)) in self.puddles.iter_mut().enumerate() {
+            if let Some(influence) = self.weather.ripple_influence_at(index, time_s) {
+                look.influence = influence as f32;
+            }
+        }
         for puddle in &mut self.filled {
             let now = match puddle.seepage {
                 Some(seepage) => filling(&self.weather, seepage, time_s),

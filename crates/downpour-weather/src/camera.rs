@@ -4,7 +4,7 @@ use super::fault::Positions;
 use super::quantity::{
     ApertureMm, DepthM, FocusM, FovDeg, In, PersistenceS, PitchDeg, PositionM, ShutterS, Stops, TurnDeg,
 };
-use super::wind::keys::{NumberKeys, VectorKeys, number_or};
+use super::wind::keys::{NumberKeys, VectorKeys, moving, number_given, number_or};
 use downpour_math::ops::f64 as ops;
 use downpour_scene::error::SceneError;
 use downpour_wind::Keyed;
@@ -284,7 +284,6 @@ pub(super) struct CameraKeys {
 impl CameraKeys {
     /// The same without constant values.
     pub(super) fn moving(self) -> Self {
-        let moving = |keyed: Option<Keyed<f64>>| keyed.filter(|keyed| keyed.keys().len() > 1);
         Self {
             fov_deg: moving(self.fov_deg),
             exposure_ev: moving(self.exposure_ev),
@@ -297,9 +296,9 @@ impl CameraTable {
     /// Values over time.
     pub(super) fn keys(&self, positions: &Positions<'_>) -> Result<CameraKeys, SceneError> {
         Ok(CameraKeys {
-            fov_deg: keyed(self.fov_deg.as_ref(), "camera.fov_deg", positions)?,
-            exposure_ev: keyed(self.exposure_ev.as_ref(), "camera.exposure_ev", positions)?,
-            focus_m: keyed(self.focus_m.as_ref(), "camera.focus_m", positions)?,
+            fov_deg: number_given(self.fov_deg.as_ref(), "camera.fov_deg", positions)?,
+            exposure_ev: number_given(self.exposure_ev.as_ref(), "camera.exposure_ev", positions)?,
+            focus_m: number_given(self.focus_m.as_ref(), "camera.focus_m", positions)?,
         })
     }
 
@@ -369,13 +368,4 @@ impl CameraTable {
         }
         Ok(Some(CameraPath { position, aim: Aim::At(target) }))
     }
-}
-
-/// A number over time, if it is given.
-fn keyed<R>(
-    given: Option<&NumberKeys<R>>,
-    path: &str,
-    positions: &Positions<'_>,
-) -> Result<Option<Keyed<f64>>, SceneError> {
-    given.map(|given| given.keyed(path, positions)).transpose()
 }

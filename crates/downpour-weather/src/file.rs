@@ -1,6 +1,7 @@
 //! Raw file: tables of keys with units, before they become a [`Weather`].
 
 use super::drips::{DripTable, Drips, DripsTable};
+use super::effect_keys::EffectKeys;
 use super::fault::Positions;
 use super::fog::FogTable;
 use super::glass::GlassTable;
@@ -114,7 +115,9 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
     let drop_model = tables.rain.drop_model(&streaks, &positions)?;
     let default = Weather::default();
     let puddles = numbered(&tables.puddle, |i, table| Puddle::checked(i, table, &positions))?;
-    let (puddles, fills): (Vec<_>, Vec<_>) = puddles.into_iter().unzip();
+    let (puddles, of_puddles): (Vec<_>, Vec<_>) = puddles.into_iter().unzip();
+    let (fills, influences): (Vec<_>, Vec<_>) =
+        of_puddles.into_iter().map(|[fill, influence]| (fill, influence)).unzip();
     puddle::check_all(&puddles, &positions)?;
     let wetness = Wetness::checked(&tables.wetness, &rain, &positions)?;
     if !wetness.is_enabled && !tables.pane.is_empty() {
@@ -122,18 +125,29 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         return Err(positions.bad("pane", "beside wetness.enabled = false", allowed));
     }
     let wind = wind::checked(&tables.wind, tables.gusts.as_ref(), tables.turbulence.as_ref(), &positions)?;
+    let (splashes, splash_size) = Splashes::checked(&tables.splashes, &positions)?;
+    let (glow, [glare, glow_width]) = tables.glow.checked(&positions)?;
+    let (fog, fog_keys) = tables.fog.map(|fog| fog.checked(&positions)).transpose()?.unzip();
+    let effects = EffectKeys {
+        splash_size,
+        glare,
+        glow_width,
+        fog: fog_keys,
+        brightness: tables.lightning.brightness(&positions)?,
+        influences: influences.into_iter().enumerate().filter_map(|(i, one)| Some((i, one?))).collect(),
+    };
     let is_still = wind.is_still() && camera.path.as_ref().is_none_or(CameraPath::is_still);
     Ok(Weather {
         name: String::new(),
         wetness,
         panes: numbered(&tables.pane, |i, table| ScenePane::checked(i, table, &positions))?,
-        splashes: Splashes::checked(&tables.splashes, &positions)?,
+        splashes,
         spray,
         drips: Drips::checked(&tables.drips, &tables.drip),
         lightning: Lightning::checked(&tables.lightning, &tables.flash, rain.seed, &positions)?,
         glass: tables.glass.map(|glass| glass.checked(&heaviest, is_still, &positions)).transpose()?,
-        fog: tables.fog.map(|fog| fog.checked(&positions)).transpose()?,
-        glow: tables.glow.checked(),
+        fog,
+        glow,
         look,
         rain,
         drop_model,
@@ -147,7 +161,15 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         streaks,
         puddles,
         waves: tables.ripples.checked(&positions)?,
-        keys: WeatherKeys::new(rates, camera_keys, sky_keys, sun_keys, model_keys, lamp_keys, fills, look_keys),
+        keys: WeatherKeys::new(
+            rates,
+            camera_keys,
+            (sky_keys, sun_keys),
+            (model_keys, lamp_keys),
+            fills,
+            look_keys,
+            effects,
+        ),
         size: tables.output.size.map_or(default.size, |Exactly(size)| size.map(|Whole(side)| side)),
     })
 }

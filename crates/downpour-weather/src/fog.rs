@@ -5,7 +5,9 @@
 
 use super::fault::Positions;
 use super::quantity::{ExtinctionPerM, FogAsymmetry, FogHeightM, Fraction, In, PositionM, VisibilityM};
+use super::wind::keys::{NumberKeys, moving, number_given};
 use downpour_scene::error::SceneError;
+use downpour_wind::Keyed;
 use serde::Deserialize;
 
 /// Default asymmetry of the phase function, for droplets of some 10 um in visible light.
@@ -49,12 +51,34 @@ pub struct Fog {
     pub albedo: f64,
 }
 
+/// Extinction of fog over time, as the file gives it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct FogKeys {
+    /// Visibility, m, or extinction, 1/m.
+    amount: Keyed<f64>,
+    /// Law of the visibility; `None` if `amount` is extinction.
+    law: Option<VisibilityLaw>,
+}
+
+impl FogKeys {
+    /// The same, if the fog changes.
+    pub(super) fn moving(self) -> Option<Self> {
+        moving(Some(self.amount)).map(|amount| Self { amount, law: self.law })
+    }
+
+    /// Extinction at a time in seconds, 1/m.
+    pub(super) fn extinction_per_m(&self, time_s: f64) -> f64 {
+        let amount = self.amount.at(time_s);
+        self.law.map_or(amount, |law| law.depth() / amount)
+    }
+}
+
 #[derive(Debug, Default, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct FogTable {
-    visibility_m: Option<In<VisibilityM>>,
-    extinction_per_m: Option<In<ExtinctionPerM>>,
+    visibility_m: Option<NumberKeys<VisibilityM>>,
+    extinction_per_m: Option<NumberKeys<ExtinctionPerM>>,
     law: Option<VisibilityLaw>,
     height_m: Option<In<FogHeightM>>,
     base_m: Option<In<PositionM>>,
@@ -63,7 +87,8 @@ pub(super) struct FogTable {
 }
 
 impl FogTable {
-    pub(super) fn checked(&self, positions: &Positions<'_>) -> Result<Fog, SceneError> {
+    /// The fog of time 0, and over time.
+    pub(super) fn checked(&self, positions: &Positions<'_>) -> Result<(Fog, FogKeys), SceneError> {
         if self.extinction_per_m.is_some() && self.law.is_some() {
             return Err(positions.bad("fog.law", "a law without visibility_m", "law with fog.visibility_m"));
         }
@@ -71,22 +96,25 @@ impl FogTable {
             let allowed = "base_m with fog.height_m";
             return Err(positions.bad("fog.base_m", "a base of fog that is the same everywhere", allowed));
         }
-        let extinction_per_m = match (self.visibility_m, self.extinction_per_m) {
-            (Some(visibility), None) => self.law.unwrap_or_default().depth() / visibility.0,
-            (None, Some(extinction)) => extinction.0,
+        let visibility = number_given(self.visibility_m.as_ref(), "fog.visibility_m", positions)?;
+        let extinction = number_given(self.extinction_per_m.as_ref(), "fog.extinction_per_m", positions)?;
+        let keys = match (visibility, extinction) {
+            (Some(amount), None) => FogKeys { amount, law: Some(self.law.unwrap_or_default()) },
+            (None, Some(amount)) => FogKeys { amount, law: None },
             (found, _) => {
                 let found = if found.is_some() { "both" } else { "neither" };
                 let found = format!("{found} of visibility_m and extinction_per_m");
                 return Err(positions.bad("fog", found, "one of visibility_m and extinction_per_m"));
             }
         };
-        Ok(Fog {
-            extinction_per_m,
+        let fog = Fog {
+            extinction_per_m: keys.extinction_per_m(0.0),
             height_m: self.height_m.map(|height| height.0),
             base_m: self.base_m.map_or(0.0, |base| base.0),
             asymmetry: self.asymmetry.map_or(FOG_ASYMMETRY, |g| g.0),
             albedo: self.albedo.map_or(1.0, |albedo| albedo.0),
-        })
+        };
+        Ok((fog, keys))
     }
 }
 

@@ -1,6 +1,10 @@
 //! `[glow]`: light around lights.
 
-use super::quantity::{Fraction, GlowWidth, In};
+use super::fault::Positions;
+use super::quantity::{Fraction, GlowWidth};
+use super::wind::keys::{NumberKeys, number_given};
+use downpour_scene::error::SceneError;
+use downpour_wind::Keyed;
 use serde::Deserialize;
 
 /// Default fraction of light that a lens scatters.
@@ -48,20 +52,27 @@ impl Glow {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct GlowTable {
-    glare: Option<In<Fraction>>,
-    width: Option<In<GlowWidth>>,
+    glare: Option<NumberKeys<Fraction>>,
+    width: Option<NumberKeys<GlowWidth>>,
     filter: Option<GlowFilter>,
     diffraction: Option<bool>,
 }
 
 impl GlowTable {
-    pub(super) fn checked(&self) -> Glow {
+    /// The glow of time 0, and glare and width over time, of those that the file gives.
+    pub(super) fn checked(
+        &self,
+        positions: &Positions<'_>,
+    ) -> Result<(Glow, [Option<Keyed<f64>>; 2]), SceneError> {
         let default = Glow::default();
-        Glow {
-            glare: self.glare.map_or(default.glare, |glare| glare.0),
-            width: self.width.map_or(default.width, |width| width.0),
+        let glare = number_given(self.glare.as_ref(), "glow.glare", positions)?;
+        let width = number_given(self.width.as_ref(), "glow.width", positions)?;
+        let glow = Glow {
+            glare: glare.as_ref().map_or(default.glare, |glare| glare.at(0.0)),
+            width: width.as_ref().map_or(default.width, |width| width.at(0.0)),
             filter: self.filter.unwrap_or_default(),
             has_diffraction: self.diffraction.unwrap_or(default.has_diffraction),
-        }
+        };
+        Ok((glow, [glare, width]))
     }
 }

@@ -2,10 +2,12 @@
 
 use super::camera::CameraKeys;
 use super::lamps::LampKeys;
+use super::effect_keys::EffectKeys;
 use super::look::{LookKeys, drop_exposure_s};
 use super::models::ModelKeys;
 use super::rain::most;
 use super::sky::{SkyKeys, SunKeys};
+use super::wind::keys::moving;
 use super::{Look, Model, PuddleFill, PuddleShape, Rain, Weather, WetnessAt};
 use downpour_wind::Keyed;
 use std::borrow::Cow;
@@ -25,18 +27,18 @@ pub struct WeatherKeys {
     /// Index of each puddle whose fill changes.
     fills: Vec<(usize, Keyed<f64>)>,
     look: Option<LookKeys>,
+    pub(super) effects: EffectKeys,
 }
 
 impl WeatherKeys {
     pub(super) fn new(
         rate: Option<Keyed<f64>>,
         camera: CameraKeys,
-        sky: SkyKeys,
-        sun: Option<SunKeys>,
-        models: Vec<ModelKeys>,
-        lamps: Vec<LampKeys>,
+        (sky, sun): (SkyKeys, Option<SunKeys>),
+        (models, lamps): (Vec<ModelKeys>, Vec<LampKeys>),
         fills: Vec<Option<Keyed<f64>>>,
         look: LookKeys,
+        effects: EffectKeys,
     ) -> Self {
         let (models, lamps) = (models.into_iter().enumerate(), lamps.into_iter().enumerate());
         let fills = fills.into_iter().enumerate();
@@ -47,10 +49,9 @@ impl WeatherKeys {
             sun: sun.and_then(SunKeys::moving),
             models: models.filter_map(|(i, model)| Some((i, model.moving()?))).collect(),
             lamps: lamps.filter_map(|(i, lamp)| Some((i, lamp.moving()?))).collect(),
-            fills: fills
-                .filter_map(|(i, fill)| Some((i, fill.filter(|fill| fill.keys().len() > 1)?)))
-                .collect(),
+            fills: fills.filter_map(|(i, fill)| Some((i, moving(fill)?))).collect(),
             look: look.moving(),
+            effects: effects.moving(),
         }
     }
 
@@ -125,6 +126,7 @@ impl Weather {
         weather.rain = self.rain_at(time_s);
         weather.camera = weather.camera.at(&self.keys.camera, time_s);
         weather.look = self.look_at(time_s);
+        weather.set_effects(&self.keys.effects, time_s);
         if let Some(sky) = &self.keys.sky {
             weather.sky = weather.sky.at(sky, time_s);
         }

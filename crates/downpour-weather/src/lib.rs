@@ -24,6 +24,7 @@
 
 mod camera;
 mod drips;
+mod effect_keys;
 mod fault;
 mod file;
 mod fog;

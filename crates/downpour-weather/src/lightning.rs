@@ -113,6 +113,13 @@ impl Lightning {
         Self { flashes, storm, is_limited, strokes }
     }
 
+    /// The same with another brightness of the flashes from a seed.
+    pub(super) fn set_brightness(&mut self, brightness: f64) {
+        if let Some(storm) = &mut self.storm {
+            storm.brightness = brightness;
+        }
+    }
+
     /// Flashes by hand, in order of time.
     #[must_use]
     pub fn flashes(&self) -> &[Flash] {

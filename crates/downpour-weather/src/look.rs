@@ -8,7 +8,7 @@ use super::MAX_EXPOSURE_S;
 use super::fault::Positions;
 use super::quantity::{StreakLength, Visibility};
 use super::spray::Spray;
-use super::wind::keys::NumberKeys;
+use super::wind::keys::{NumberKeys, moving, number_given};
 
 /// Artistic multipliers of the rain in a picture: 1 is what physics gives. The rain that falls, wets and splashes is the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,7 +62,6 @@ impl Look {
 impl LookKeys {
     /// The same without constant values.
     pub(super) fn moving(self) -> Option<Self> {
-        let moving = |keyed: Option<Keyed<f64>>| keyed.filter(|keyed| keyed.keys().len() > 1);
         let moving = Self {
             visibility: moving(self.visibility),
             streak_length: moving(self.streak_length),
@@ -93,12 +92,10 @@ impl LookTable {
             let allowed = "beside spray.enabled = true";
             return Err(positions.bad("look.spray", "of spray that is not enabled", allowed));
         }
-        let (visibility, length) = (self.visibility.as_ref(), self.streak_length.as_ref());
-        let density = self.spray.as_ref();
         let keys = LookKeys {
-            visibility: visibility.map(|keys| keys.keyed("look.visibility", positions)).transpose()?,
-            streak_length: length.map(|keys| keys.keyed("look.streak_length", positions)).transpose()?,
-            spray: density.map(|keys| keys.keyed("look.spray", positions)).transpose()?,
+            visibility: number_given(self.visibility.as_ref(), "look.visibility", positions)?,
+            streak_length: number_given(self.streak_length.as_ref(), "look.streak_length", positions)?,
+            spray: number_given(self.spray.as_ref(), "look.spray", positions)?,
         };
         Ok((Look::default().at(&keys, 0.0), keys))
     }

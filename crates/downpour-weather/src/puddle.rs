@@ -6,7 +6,7 @@ use super::quantity::{
     AttenuationM, Exactly, FieldCellMm, Fill, In, Influence, PositionM, PuddleDepthMm, PuddleM, PuddleReachM,
     ReliefMm, RippleScale, SeepageMmH, Tint, TurnDeg,
 };
-use super::wind::keys::NumberKeys;
+use super::wind::keys::{NumberKeys, number_given};
 use downpour_scene::error::SceneError;
 use downpour_scene::uri::RelativePath;
 use downpour_wind::Keyed;
@@ -116,19 +116,19 @@ pub(super) struct PuddleTable {
     cell_mm: Option<In<FieldCellMm>>,
     ripple_scale: Option<In<RippleScale>>,
     ripple_deg: Option<In<TurnDeg>>,
-    ripple_influence: Option<In<Influence>>,
+    ripple_influence: Option<NumberKeys<Influence>>,
     rings: Option<PuddleRings>,
     attenuation_length_m: Option<In<AttenuationM>>,
     color: Option<Exactly<In<Tint>, 3>>,
 }
 
 impl Puddle {
-    /// The puddle at time 0, and its fill over time if it is given.
+    /// The puddle at time 0, and its fill and the influence of its ripples over time if they are given.
     pub(super) fn checked(
         index: usize,
         table: &PuddleTable,
         positions: &Positions<'_>,
-    ) -> Result<(Self, Option<Keyed<f64>>), SceneError> {
+    ) -> Result<(Self, [Option<Keyed<f64>>; 2]), SceneError> {
         let at = |name: &str| format!("puddle[{index}].{name}");
         let size = table.size_m.numbers();
         let meters = |given: Option<f64>, default_mm: f64| given.unwrap_or(default_mm) * 1.0e-3;
@@ -166,6 +166,7 @@ impl Puddle {
                 cells,
             }
         };
+        let influence = number_given(table.ripple_influence.as_ref(), &at("ripple_influence"), positions)?;
         let usual_depth_mm = if table.mask.is_some() { 12.0 } else { 100.0 };
         let puddle = Self {
             middle: table.position_m.numbers(),
@@ -176,12 +177,12 @@ impl Puddle {
             depth: meters(table.depth_mm.map(|mm| mm.0), usual_depth_mm),
             ripple_scale: table.ripple_scale.map_or(1.0, |scale| scale.0),
             ripple_turn: table.ripple_deg.map_or(0.0, |deg| deg.0.to_radians()),
-            ripple_influence: table.ripple_influence.map_or(1.0, |influence| influence.0),
+            ripple_influence: influence.as_ref().map_or(1.0, |influence| influence.at(0.0)),
             rings: table.rings.unwrap_or_default(),
             attenuation_length: table.attenuation_length_m.map_or(0.25, |m| m.0),
             color: table.color.map_or([0.12, 0.105, 0.08], Exactly::numbers),
         };
-        Ok((puddle, keys))
+        Ok((puddle, [keys, influence]))
     }
 }
 

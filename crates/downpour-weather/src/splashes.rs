@@ -2,10 +2,12 @@
 
 use downpour_drop::splash::FILM_M;
 use downpour_scene::error::SceneError;
+use downpour_wind::Keyed;
 use serde::Deserialize;
 
 use super::fault::Positions;
 use super::quantity::{FilmMm, In, SplashSize};
+use super::wind::keys::{NumberKeys, number_given};
 
 /// Splashes where drops hit surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,28 +28,33 @@ impl Default for Splashes {
 }
 
 impl Splashes {
-    /// Rejects keys of splashes where there are none.
-    pub(super) fn checked(table: &SplashesTable, positions: &Positions<'_>) -> Result<Self, SceneError> {
+    /// The splashes of time 0, and the size of crowns over time if it is given. Rejects keys of splashes where there are none.
+    pub(super) fn checked(
+        table: &SplashesTable,
+        positions: &Positions<'_>,
+    ) -> Result<(Self, Option<Keyed<f64>>), SceneError> {
         let is_enabled = table.enabled.unwrap_or(true);
         let given = [("splashes.size", table.size.is_some()), ("splashes.film_mm", table.film_mm.is_some())];
         if let Some((key, _)) = given.iter().find(|(_, given)| *given && !is_enabled) {
             return Err(positions.bad(key, "beside enabled = false".to_owned(), "enabled = false alone"));
         }
         let default = Self::default();
-        Ok(Self {
+        let size = number_given(table.size.as_ref(), "splashes.size", positions)?;
+        let splashes = Self {
             is_enabled,
-            size: table.size.map_or(default.size, |size| size.0),
+            size: size.as_ref().map_or(default.size, |size| size.at(0.0)),
             film_m: table.film_mm.map_or(default.film_m, |depth| depth.0 * 1.0e-3),
-        })
+        };
+        Ok((splashes, size))
     }
 }
 
 /// Table of the file.
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct SplashesTable {
     enabled: Option<bool>,
-    size: Option<In<SplashSize>>,
+    size: Option<NumberKeys<SplashSize>>,
     film_mm: Option<In<FilmMm>>,
 }

@@ -46,6 +46,17 @@ directional = { direction = [0, -2, 0], illuminance_lux = [[0, 8], [10, 0]] }
 position_m = [0, 0, 0]
 size_m = [1, 1]
 fill = [[0, 0], [10, 1]]
+ripple_influence = [[0, 1], [10, 3]]
+[splashes]
+size = [[0, 1], [10, 2]]
+[glow]
+glare = [[0, 0], [10, 0.5]]
+width = [[0, 1], [10, 3]]
+[fog]
+visibility_m = [[0, 1000], [10, 200]]
+[lightning]
+per_minute = 10
+brightness = [[0, 1], [10, 5]]
 ";
 
 /// Halfway all values are in the middle; before and after the keys they are those of the ends.
@@ -89,6 +100,12 @@ fn every_key_moves_linearly() {
     assert_eq!((direction, illuminance_lux), (DVec3::NEG_Y, 4.0));
     let PuddleShape::Found { fill, .. } = now.puddles[0].shape else { panic!("{:?}", now.puddles) };
     assert_eq!(fill, PuddleFill::Part(0.5));
+    assert_eq!((now.puddles[0].ripple_influence, weather.ripple_influence_at(0, 20.0)), (2.0, Some(3.0)));
+    assert_eq!((now.splashes.size, weather.splashes.size), (1.5, 1.0));
+    assert_eq!((now.glow.glare, now.glow.width, weather.glow_at(99.0).width), (0.25, 2.0, 3.0));
+    // Visibility is linear between its keys: Koschmieder's law at 600 m.
+    assert!((now.fog.unwrap().extinction_per_m - 3.912 / 600.0).abs() < 1e-12, "{:?}", now.fog);
+    assert_eq!(now.lightning.storm().unwrap().brightness, 3.0);
     // Two stops more than at the first key.
     assert_eq!([-1.0, 0.0, 10.0, 99.0].map(|time| weather.exposure_factor(time)), [1.0, 1.0, 4.0, 4.0]);
     assert_eq!(weather.at(-9.0).sky.scale, 2.0);

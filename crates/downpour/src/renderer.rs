@@ -489,7 +489,7 @@ impl Renderer {
                 spray: self.shower.spray(time_s)?,
                 ..RainOptions::default()
             },
-            glow: Glow::of_weather(&self.weather, &medium),
+            glow: Glow::of_weather(&self.weather, &medium, time_s),
         })
     }
 

@@ -185,6 +185,12 @@ impl Shower {
         if drips_alike && weather.wind == before.wind { self.with_drips_of(other) } else { self }
     }
 
+    /// Splashes of a picture at a time in seconds.
+    fn splashes_at(&self, time_s: f64) -> Option<SplashOptions> {
+        let size = self.weather.splashes_at(time_s).size;
+        self.splashes.map(|splashes| SplashOptions { size, ..splashes })
+    }
+
     /// Drops that drip, as a picture shows them.
     fn drips(
         &self,
@@ -247,16 +253,17 @@ impl Shower {
         time_s: f64,
         passed: &mut dyn FnMut(u32, u32),
     ) -> Result<VisibleDrops, ShowerError> {
+        let splashes = self.splashes_at(time_s);
         let mut visible = match &mut self.form {
             Form::Closed(field) => {
                 let view = View { max_drops: self.weather.rain.max_drops, ..frame_scene.view()? };
                 let view = drops_view(&self.weather.rain, view);
                 let obstacles = obstacles(frame_scene);
-                let impacts = (self.splashes.as_ref(), Some(&self.bounce));
+                let impacts = (splashes.as_ref(), Some(&self.bounce));
                 drops_among(field, &obstacles, &view, time_s, impacts)?
             }
             Form::Stepped(stepped) => {
-                stepped.at(scenery, frame_scene, time_s, self.splashes.as_ref(), passed)?
+                stepped.at(scenery, frame_scene, time_s, splashes.as_ref(), passed)?
             }
         };
         let view = View { max_drops: self.weather.rain.max_drops, ..frame_scene.view()? };
@@ -304,9 +311,10 @@ impl Shower {
         let obstacles = obstacles(frame_scene);
         let mut droplets =
             self.drips(frame_scene, &of_drips, drips_least(&self.weather.rain, &resolved), time_s)?;
+        let splashes = self.splashes_at(time_s);
         #[cfg(feature = "wgpu")]
         let (on_device, bounce) = (
-            self.splashes.filter(|splashes| splashes.fits_device(field, &view, time_s, &obstacles)),
+            splashes.filter(|splashes| splashes.fits_device(field, &view, time_s, &obstacles)),
             Some(self.bounce).filter(|bounce| bounce.fits_device(field, &view, least, time_s, &obstacles)),
         );
         #[cfg(not(feature = "wgpu"))]
@@ -314,7 +322,7 @@ impl Shower {
         if bounce.is_none() {
             droplets.extend(field.bounced(&obstacles, &view, least, time_s, &self.bounce)?);
         }
-        if let (Some(splashes), None) = (&self.splashes, on_device) {
+        if let (Some(splashes), None) = (&splashes, on_device) {
             droplets.extend(field.splashes(&obstacles, &view, time_s, splashes)?);
         }
         let pane = pane_plane(&self.weather, &frame_scene.viewpoint)?;
@@ -354,7 +362,7 @@ impl Shower {
         if let Some(pane) = &pane {
             keep_outside(&mut droplets, pane, &view);
         }
-        let rain = ShowerRain::Stepped { picture, splashes: self.splashes };
+        let rain = ShowerRain::Stepped { picture, splashes: self.splashes_at(time_s) };
         Ok(ShowerView { rain, time_s, view, resolved, pane, droplets })
     }
 
@@ -425,7 +433,8 @@ impl Shower {
             },
             visibility: self.weather.look_at(time_s).visibility,
         };
-        let with_fog = |medium: RainMedium| medium.with_fog(self.weather.fog.as_ref(), frame_scene.origin.y);
+        let fog = self.weather.fog_at(time_s);
+        let with_fog = |medium: RainMedium| medium.with_fog(fog.as_ref(), frame_scene.origin.y);
         if self.weather.keys.rate().is_none() {
             return Ok(with_fog(self.steady_medium(resolved, masks, &options)?));
         }

@@ -2,8 +2,11 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod model;
+
 use downpour::scene::Budget;
 use downpour::shower::Shower;
+use downpour::street::{Car, TimeOfDay};
 use downpour::{Backend, Frame, Renderer, RendererOptions, Source};
 
 /// A sky that darkens, a lamp that lights up and moves, a zoom.
@@ -50,6 +53,10 @@ fn renderer(text: &str, first_s: f64) -> Renderer {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.toml");
     std::fs::write(&path, text).unwrap();
+    let floor = [[-20.0, 0.0, -20.0], [20.0, 0.0, -20.0], [20.0, 0.0, 20.0], [-20.0, 0.0, 20.0]];
+    model::write(folder.path(), &floor, &[0, 2, 1, 0, 3, 2]).unwrap();
+    std::fs::write(folder.path().join("car.glb"), Car::new(2).unwrap().to_glb(TimeOfDay::Night).unwrap())
+        .unwrap();
     let source = Source::read(&path, &[], &mut Budget::default()).unwrap();
     let options = RendererOptions { first_s, ..RendererOptions::default() };
     Renderer::new(source.weather, source.loaded, options, Backend::Cpu.device().unwrap()).unwrap()
@@ -78,6 +85,77 @@ fn a_frame_alone_is_the_frame_of_a_clip_and_that_of_its_values() {
     assert_ne!(bits(&frames[0]), bits(&alone));
     // Earlier frames after later ones.
     assert_eq!(bits(&clip.frame(1.0).unwrap()), bits(&frames[1]));
+}
+
+/// A car that turns in fog that thickens, in the light of flashes.
+fn effects([place, turn, glare, width, fog, brightness]: [&str; 6]) -> String {
+    format!(
+        "
+model = [
+    {{ file = \"floor.gltf\" }},
+    {{ file = \"car.glb\", animation_speed = 2, translation_m = {place}, rotation_deg = {turn} }},
+]
+[rain]
+rate_mm_h = 30
+[sky]
+zenith_color = [0.4, 0.45, 0.5]
+[camera]
+position_m = [0, 1.2, 0]
+look_at_m = [0, 0.4, -6]
+fov_deg = 50
+shutter_s = 0.05
+[glow]
+glare = {glare}
+width = {width}
+[fog]
+visibility_m = {fog}
+[lightning]
+limit = false
+per_minute = 600
+brightness = {brightness}
+[output]
+size = [32, 20]
+"
+    )
+}
+
+#[test]
+fn models_and_effects_move_by_their_keys() {
+    let keyed = [
+        "[[0, [-4, 0, -6]], [4, [4, 0, -6]]]",
+        "[[0, [0, 0, 0]], [4, [0, 180, 0]]]",
+        "[[0, 0.02], [4, 0.1]]",
+        "[[0, 1], [4, 3]]",
+        // The light of a flash is that in the fog of its moment.
+        "[[0, 180], [1, 100], [3, 100], [4, 20]]",
+        "[[0, 2000], [4, 20000]]",
+    ];
+    let middle = ["[0, 0, -6]", "[0, 90, 0]", "0.06", "2", "100", "11000"];
+    let mut clip = renderer(&effects(keyed), 0.0);
+    let frame = |renderer: &mut Renderer| {
+        renderer.set_exposure(Some(1.0));
+        assert!(renderer.is_in_flash(2.0));
+        renderer.frame(2.0).unwrap()
+    };
+    let own = bits(&frame(&mut clip));
+    assert!(own == bits(&frame(&mut renderer(&effects(middle), 0.0))));
+}
+
+/// Values of time 0 would give another picture: crowns of splashes from near and the ripples of a puddle, with keys and with the values of their time.
+#[test]
+fn splashes_and_ripples_grow_by_their_keys() {
+    let text = |size: &str, influence: &str| {
+        format!(
+            "model = [{{ file = \"floor.gltf\" }}]\n[rain]\nrate_mm_h = 200\n[sky]\nzenith_color = [0.4, 0.45, 0.5]\n\
+             [camera]\nposition_m = [0, 0.4, 0]\nlook_at_m = [0, 0, -0.2]\nfov_deg = 30\n[splashes]\nsize = {size}\n\
+             [[puddle]]\nposition_m = [0, 0, -0.2]\nsize_m = [1, 1]\nrelief_mm = 20\nripple_influence = {influence}\n\
+             [output]\nsize = [48, 32]\n"
+        )
+    };
+    let keys = "[[0, 1], [0.4, 3]]";
+    let [keyed, middle] = [[keys, keys], ["2", "2"]]
+        .map(|[size, influence]| bits(&renderer(&text(size, influence), 0.0).frame(0.2).unwrap()));
+    assert!(keyed == middle);
 }
 
 /// A shower over a puddle and behind a pane.

@@ -299,6 +299,7 @@ fn pane(keys: &str) -> GlassPicture {
     let loaded = Loaded {
         scene: Scene::default(),
         animations: Vec::new(),
+        moving: Vec::new(),
         sky,
         sun,
         unscaled: None,

@@ -7,7 +7,9 @@ use crate::quantity::{
     StrokeKey, Tint, TurnDeg,
 };
 use crate::sky::towards;
+use crate::wind::keys::{NumberKeys, number_given};
 use downpour_scene::error::SceneError;
+use downpour_wind::Keyed;
 use serde::Deserialize;
 
 /// Default elevation of a flash, degrees.
@@ -57,7 +59,7 @@ pub(crate) struct LightningTable {
     seed: Option<u64>,
     distance_m: Option<Exactly<In<FlashM>, 2>>,
     azimuth_deg: Option<Exactly<In<TurnDeg>, 2>>,
-    brightness: Option<In<Scale>>,
+    brightness: Option<NumberKeys<Scale>>,
     clouds: Option<In<Clouds>>,
     color: Option<Exactly<In<Tint>, 3>>,
 }
@@ -170,6 +172,11 @@ fn check_rate(flashes: &[Flash], positions: &Positions<'_>) -> Result<(), SceneE
 }
 
 impl LightningTable {
+    /// Factor of the light of flashes from a seed over time, if it is given.
+    pub(crate) fn brightness(&self, positions: &Positions<'_>) -> Result<Option<Keyed<f64>>, SceneError> {
+        number_given(self.brightness.as_ref(), "lightning.brightness", positions)
+    }
+
     /// Flashes from a seed, if there are any.
     fn storm(&self, rain_seed: u64, positions: &Positions<'_>) -> Result<Option<Storm>, SceneError> {
         let Some(per_minute) = self.per_minute.map(|rate| rate.0).filter(|rate| *rate > 0.0) else {
@@ -202,7 +209,7 @@ impl LightningTable {
             seed: self.seed.unwrap_or(rain_seed),
             distance_m,
             azimuth: azimuth_deg.map(f64::to_radians),
-            brightness: self.brightness.map_or(1.0, |factor| factor.0),
+            brightness: self.brightness(positions)?.map_or(1.0, |factor| factor.at(0.0)),
             clouds: self.clouds.map_or(CLOUDS, |clouds| clouds.0),
             color: self.color.map_or(COLOR, Exactly::numbers),
         }))

@@ -88,6 +88,20 @@ pub(crate) fn number_or<R>(
     given.map_or_else(|| Ok(default.into()), |given| given.keyed(path, positions))
 }
 
+/// The number over time, if it is given.
+pub(crate) fn number_given<R>(
+    given: Option<&NumberKeys<R>>,
+    path: &str,
+    positions: &Positions<'_>,
+) -> Result<Option<Keyed<f64>>, SceneError> {
+    given.map(|given| given.keyed(path, positions)).transpose()
+}
+
+/// Values over time that change.
+pub(crate) fn moving<T: Blend>(keyed: Option<Keyed<T>>) -> Option<Keyed<T>> {
+    keyed.filter(|keyed| keyed.keys().len() > 1)
+}
+
 /// The vector over time, or a constant default.
 pub(crate) fn vector_or<R>(
     given: Option<&VectorKeys<R>>,

@@ -24,7 +24,7 @@ impl Renderer {
     fn flash_parts(&self, time_s: f64) -> Vec<FlashExposure> {
         let half_s = 0.5 * self.weather.camera.shutter;
         let fades = self.weather.camera.observer == Observer::Eye;
-        self.weather.lightning.exposure(time_s - half_s, time_s + half_s, fades)
+        self.weather.at(time_s).lightning.exposure(time_s - half_s, time_s + half_s, fades)
     }
 
     /// The frame of a time in the light of its flashes alone, in parts; none without lightning. `drops` are those of the frame.

@@ -39,7 +39,7 @@ pub(super) fn stats(frame: &Frame, computer: &Computer, weather: &Weather) -> Va
             "visibility": number(look.visibility),
             "streak_length": number(look.streak_length),
             "spray": number(look.spray),
-            "splash_size": number(weather.splashes.size),
+            "splash_size": number(weather.splashes_at(frame.time_s).size),
             "milk": weather.rain.layers.map(|layers| number(layers.milk)),
         },
         "triangles": frame.triangles,
