@@ -25,6 +25,7 @@ mod settle;
 mod smooth;
 mod state;
 mod surface;
+mod tail;
 mod totals;
 mod transfer;
 mod wiper;

@@ -1,7 +1,7 @@
 //! Drops in the form that a picture needs.
 
 use downpour_math::ops;
-use downpour_shaders::sim::field::{FIELD_BOUNCED, FIELD_SPLASH};
+use downpour_shaders::sim::field::{FIELD_BOUNCED, FIELD_NORMAL_STEPS, FIELD_SPLASH};
 use glam::{DVec3, Vec3};
 
 use crate::resolved::Resolved;
@@ -51,11 +51,16 @@ pub struct FallingDrop {
     /// Part of the exposure in which the drop exists, s from the picture's time: [`FallingDrop::ALWAYS`] unless it
     /// lands or starts while the shutter is open. A splash is from the impact to the end of its crown.
     pub present_s: [f32; 2],
+    /// Unit normal of the surface on which a splash stands; [`FallingDrop::LEVEL`] on level ground, and for all other drops.
+    pub normal: [f32; 3],
 }
 
 impl FallingDrop {
     /// Value of `present_s` for a drop that exists all the time.
     pub const ALWAYS: [f32; 2] = [f32::NEG_INFINITY, f32::INFINITY];
+
+    /// Normal of level ground.
+    pub const LEVEL: [f32; 3] = [0.0, 1.0, 0.0];
 
     /// Time relative to the picture's, s, at which the drop is at its position: 0 if it exists at the picture's time,
     /// else the time at which it lands or starts.
@@ -105,7 +110,7 @@ pub struct EyeDrop {
     pub id: u32,
     /// Part of the exposure in which it exists, s from the picture's time.
     pub present: [f32; 2],
-    /// Terminal speed, m/s; `FIELD_BOUNCED` if it is not known or for a droplet that rebounded, `FIELD_SPLASH` for a splash.
+    /// Terminal speed, m/s; `FIELD_BOUNCED` if it is not known or for a droplet that rebounded; of a splash [`eye_drop_standing`].
     pub speed: f32,
     /// Lower half of its id.
     pub id_low: u32,
@@ -122,7 +127,10 @@ impl EyeDrop {
             velocity: drop.velocity,
             id: drop.id as u32 ^ (drop.id >> 32) as u32,
             present: drop.present_s.map(|time| time.clamp(-ALWAYS_S, ALWAYS_S)),
-            speed: if drop.kind == DropKind::Splash { FIELD_SPLASH } else { FIELD_BOUNCED },
+            speed: match drop.kind {
+                DropKind::Splash => eye_drop_standing(drop.normal.into()),
+                _ => FIELD_BOUNCED,
+            },
             id_low: drop.id as u32,
         }
     }
@@ -137,6 +145,10 @@ impl EyeDrop {
             id: u64::from(self.id ^ self.id_low) << 32 | u64::from(self.id_low),
             kind,
             present_s: self.present.map(forever),
+            normal: match kind {
+                DropKind::Splash => eye_drop_normal(self.speed).into(),
+                _ => FallingDrop::LEVEL,
+            },
         };
         drop.position += (Vec3::from(self.velocity) * drop.seen_s()).as_dvec3();
         drop
@@ -149,6 +161,29 @@ impl EyeDrop {
         let moved = Vec3::from(self.offset) + (Vec3::from(self.velocity) - velocity) * time;
         eye_drop_turned(moved, turning * -time)
     }
+}
+
+/// The normal of a surface that does not look down, as a whole number of `FIELD_SPLASH` or below: two numbers of the upper half of an
+/// octahedron, unfolded. Twin of the function of this name in `shaders/wgsl/sim/eye_drop.wgsl`.
+#[must_use]
+pub fn eye_drop_standing(normal: Vec3) -> f32 {
+    let steps = FIELD_NORMAL_STEPS as f32;
+    let size = normal.abs().element_sum().max(1.0e-20);
+    let step = |part: f32| ((part / size).clamp(-1.0, 1.0) * steps + 0.5).floor() + steps;
+    FIELD_SPLASH - (step(normal.x + normal.z) * (2.0 * steps + 1.0) + step(normal.x - normal.z))
+}
+
+/// The normal of the surface on which a splash stands, from its [`eye_drop_standing`]. Twin of the function of this name in
+/// `shaders/wgsl/sim/eye_drop.wgsl`.
+#[must_use]
+pub fn eye_drop_normal(speed: f32) -> Vec3 {
+    let width = 2 * FIELD_NORMAL_STEPS + 1;
+    let code = (FIELD_SPLASH - speed).max(0.0) as u32;
+    let [first, second] = [code / width, code % width]
+        .map(|k| (k as f32 - FIELD_NORMAL_STEPS as f32) / FIELD_NORMAL_STEPS as f32);
+    let (x, z) = (0.5 * (first + second), 0.5 * (first - second));
+    let normal = Vec3::new(x, (1.0 - x.abs() - z.abs()).max(0.0), z);
+    normal / normal.length()
 }
 
 /// Part of the exposure, s from its middle, in which a drop is beyond a pane, from its distances beyond it at the begin and
@@ -193,4 +228,24 @@ pub struct VisibleDrops {
     /// Limits of the list; all other drops of the rain are unresolved. `least_pixels` is raised if there would be too
     /// many.
     pub resolved: Resolved,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Level ground comes back exactly, other normals to a thousandth; all are told from the speeds of other drops.
+    #[test]
+    fn normals_of_splashes_come_back() {
+        assert_eq!(eye_drop_normal(eye_drop_standing(Vec3::Y)), Vec3::Y);
+        for k in 0..2000u16 {
+            let (turn, up) = (f32::from(k) * 0.37, f32::from(k % 101) / 100.0);
+            let level = (1.0 - up * up).sqrt();
+            let normal = Vec3::new(level * ops::cos(turn), up, level * ops::sin(turn));
+            let speed = eye_drop_standing(normal);
+            assert!(speed <= FIELD_SPLASH && speed.fract() == 0.0, "{speed}");
+            let found = eye_drop_normal(speed);
+            assert!(found.distance(normal) < 1.0e-3, "{normal}: {found}");
+        }
+    }
 }

@@ -58,7 +58,7 @@ use crate::drift::Drift;
 pub use crate::drift::drift_position;
 pub use crate::falling::{DropKind, EyeDrop, FallingDrop, VisibleDrops};
 #[doc(hidden)]
-pub use crate::falling::{eye_drop_outside, eye_drop_turned};
+pub use crate::falling::{eye_drop_normal, eye_drop_outside, eye_drop_standing, eye_drop_turned};
 use crate::resolved::Resolved;
 use crate::shelter::{Obstacles, keep_open};
 use crate::view::{Bounds, View, within};
@@ -503,6 +503,7 @@ impl Chain {
             id: u64::from(high) << 32 | u64::from(low),
             kind: DropKind::Falling,
             present_s: FallingDrop::ALWAYS,
+            normal: FallingDrop::LEVEL,
         }
     }
 }

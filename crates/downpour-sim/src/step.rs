@@ -188,7 +188,7 @@ impl StepEvent {
     }
 }
 
-/// True if an impact may make a splash: that of a drop that fell, on a surface that is not steep.
+/// True if an impact may make a splash: that of a drop that fell, on a surface that does not look down.
 #[must_use]
 pub fn step_splashes(event: &StepEvent) -> bool {
     event.drop >> STEP_EVENT_KIND == 0 && event.normal().y >= SPLASH_LEVEL

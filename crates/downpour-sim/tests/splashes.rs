@@ -229,9 +229,22 @@ fn a_crown_is_the_same_at_all_times() {
     assert!(both > 20, "{both} of {}", after.len());
 }
 
+/// Crowns on a slope stand along its normal, as high above it as they do above level ground; drops that fall past a wall leave none.
 #[test]
-fn there_are_none_on_a_steep_surface() {
-    let wall = quad([[-9.0, 9.0, -9.0], [-9.0, -9.0, 9.0], [9.0, -9.0, 9.0], [9.0, 9.0, -9.0]]);
+fn they_stand_along_the_normal() {
+    let slope = quad([[-9.0, 9.0, -9.0], [-9.0, -9.0, 9.0], [9.0, -9.0, 9.0], [9.0, 9.0, -9.0]]);
+    let crowns = splashes(&Bvh::new(&slope), 2.0);
+    assert!(crowns.len() > 20, "{}", crowns.len());
+    let half = 0.5f64.sqrt();
+    for crown in &crowns {
+        let normal = Vec3::from(crown.normal);
+        assert!(normal.distance(Vec3::new(0.0, half as f32, half as f32)) < 1.0e-5, "{normal}");
+        let above = (crown.position.y + crown.position.z) * half;
+        let stage = f64::from(-crown.present_s[0] / (crown.present_s[1] - crown.present_s[0]));
+        let middle = downpour_drop::splash::crown::middle(stage) * f64::from(crown.diameter) / 2.0;
+        assert!((above - middle).abs() < 1.0e-5, "{above} m, {middle} m");
+    }
+    let wall = quad([[-9.0, 9.0, -3.0], [-9.0, -9.0, -3.0], [9.0, -9.0, -3.0], [9.0, 9.0, -3.0]]);
     assert!(splashes(&Bvh::new(&wall), 2.0).is_empty());
     assert!(splashes(&Bvh::new(&[]), 2.0).is_empty());
 }

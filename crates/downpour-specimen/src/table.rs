@@ -199,6 +199,7 @@ impl TableStreak {
             id: ID.into(),
             kind: DropKind::Falling,
             present_s: FallingDrop::ALWAYS,
+            normal: FallingDrop::LEVEL,
         };
         let mut rain = Rain::new(&frame.camera, eye, &[drop], &masks, &of_rain);
         for drop in &mut rain.list {

@@ -457,8 +457,7 @@ impl Car {
             Placement::new(side * HUB_M, WHEEL_M, z, if side < 0.0 { 180.0 } else { 0.0 })
         };
         let hubs = [-1.0, 1.0].into_iter().flat_map(|side| AXLES_M.map(|z| hub(side, z))).collect();
-        let wheels =
-            Piece { name: "wheel".to_owned(), mesh: wheel, copies: hubs, rolls_on_m: Some(WHEEL_M) };
+        let wheels = Piece { name: "wheel".to_owned(), mesh: wheel, copies: hubs, rolls_on_m: Some(WHEEL_M) };
         let beam = |side: f32| Lamp {
             name: "dipped beam",
             position: [side * BEAM_ASIDE_M, 0.66, NOSE_M - 0.08],
@@ -468,10 +467,7 @@ impl Car {
             intensity_cd: BEAM_CD,
             range_m: BEAM_RANGE_M,
         };
-        Ok(Self {
-            pieces: vec![Piece::single("car", body), wheels],
-            lamps: vec![beam(-1.0), beam(1.0)],
-        })
+        Ok(Self { pieces: vec![Piece::single("car", body), wheels], lamps: vec![beam(-1.0), beam(1.0)] })
     }
 
     /// Body and wheels.

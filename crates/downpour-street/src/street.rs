@@ -58,8 +58,11 @@ impl Street {
         lamps(settings, &ground, &mut plan);
         let cars = cars(settings, &ground, &mut plan);
         furnish(settings, &ground, &cars, &mut plan);
-        let mut pieces: Vec<Piece> =
-            plan.copies.into_iter().map(|(name, (mesh, copies))| Piece { name, mesh, copies, rolls_on_m: None }).collect();
+        let mut pieces: Vec<Piece> = plan
+            .copies
+            .into_iter()
+            .map(|(name, (mesh, copies))| Piece { name, mesh, copies, rolls_on_m: None })
+            .collect();
         for piece in &mut pieces {
             piece.mesh.clean();
         }

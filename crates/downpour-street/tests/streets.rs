@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use downpour_scene::Budget;
 use downpour_scene::gltf::{read_scene, read_triangles};
 use downpour_street::{
-    Car, LampEra, MAX_CARRIAGEWAY_M, MAX_PAVEMENT_M, MIN_CARRIAGEWAY_M, MIN_LENGTH_M, MIN_PAVEMENT_M, Material,
-    Mesh, Part, Paving, Street, StreetError, StreetSettings, TimeOfDay,
+    Car, LampEra, MAX_CARRIAGEWAY_M, MAX_PAVEMENT_M, MIN_CARRIAGEWAY_M, MIN_LENGTH_M, MIN_PAVEMENT_M,
+    Material, Mesh, Part, Paving, Street, StreetError, StreetSettings, TimeOfDay,
 };
 use glam::Vec3;
 use rayon::prelude::*;
@@ -261,14 +261,16 @@ fn wheels_roll_at_a_meter_per_second() {
         for time_s in [0.1, 0.7, 1.3, 1.9] {
             let step_s = 0.01;
             let (now, then) = (scene.pose(Some(0), time_s), scene.pose(Some(0), time_s + step_s));
-            let wheels = now.instances.iter().zip(&then.instances).filter(|(one, _)| one.world.translation.y > 0.3);
+            let wheels =
+                now.instances.iter().zip(&then.instances).filter(|(one, _)| one.world.translation.y > 0.3);
             let mut count = 0;
             for (one, next) in wheels {
                 count += 1;
                 assert!(one.world.translation.distance(next.world.translation) < 1e-6);
                 for (side, expected) in [(-radius, -1.0), (radius, 1.0)] {
                     let rim = one.world.translation + glam::Vec3A::new(0.0, side, 0.0);
-                    let moved = next.world.transform_point3a(one.world.inverse().transform_point3a(rim)) - rim;
+                    let moved =
+                        next.world.transform_point3a(one.world.inverse().transform_point3a(rim)) - rim;
                     assert!((moved.z / step_s - expected).abs() < 0.02, "{time_s} s, {side} m: {moved}");
                 }
             }

@@ -65,6 +65,7 @@ fn drawn(
         id: 5,
         kind: DropKind::Falling,
         present_s: FallingDrop::ALWAYS,
+        normal: FallingDrop::LEVEL,
     };
     let exposure = Exposure {
         shutter_s: SHUTTER_S,

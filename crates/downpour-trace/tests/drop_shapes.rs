@@ -90,6 +90,7 @@ fn picture(
         id: 1,
         kind: DropKind::Falling,
         present_s: FallingDrop::ALWAYS,
+        normal: FallingDrop::LEVEL,
     };
     let size = [SIZE as u32; 2];
     let options = PictureOptions {

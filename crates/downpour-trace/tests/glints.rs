@@ -55,6 +55,7 @@ fn picture(
         id: 1,
         kind: DropKind::Falling,
         present_s: FallingDrop::ALWAYS,
+        normal: FallingDrop::LEVEL,
     };
     let shutter_s = if way == [0.0; 2] { 0.0 } else { 0.01 };
     let exposure = Exposure { shutter_s, samples, ..Exposure::default() };

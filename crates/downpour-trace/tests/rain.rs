@@ -26,7 +26,15 @@ fn scale() -> f64 {
 
 fn drop_at(position: DVec3, diameter: f32) -> FallingDrop {
     let (velocity, present_s) = ([0.0, -4.0, 0.0], FallingDrop::ALWAYS);
-    FallingDrop { position, velocity, diameter, id: 1, kind: DropKind::Falling, present_s }
+    FallingDrop {
+        position,
+        velocity,
+        diameter,
+        id: 1,
+        kind: DropKind::Falling,
+        present_s,
+        normal: FallingDrop::LEVEL,
+    }
 }
 
 fn picture(
@@ -148,6 +156,12 @@ fn in_uniform_surroundings_splashes_vanish() -> Outcome {
             id: u64::from(k),
             kind: DropKind::Splash,
             present_s: [-stage, 0.04 - stage],
+            // On level ground, on slopes and on walls.
+            normal: match k % 3 {
+                0 => FallingDrop::LEVEL,
+                1 => [0.6, 0.8, 0.0],
+                _ => [0.28, 0.0, 0.96],
+            },
         }
     };
     let crowns: Vec<FallingDrop> = (0..25).map(crown).collect();
@@ -163,6 +177,42 @@ fn in_uniform_surroundings_splashes_vanish() -> Outcome {
             assert!((found / expected - 1.0).abs() < 1.0e-3, "{pixel:?}");
         }
     }
+    Ok(())
+}
+
+/// A crown on a wall before an eye that lies on its side is the crown on level ground: they are seen from above in the same way.
+#[test]
+fn a_crown_on_a_wall_is_turned() -> Outcome {
+    let scene = sky(|height| [1.0 + height; 3]);
+    let (level, above) = (0.8, 0.6);
+    let masks = DropMasks::trace(1.333)?.with_splashes(1.333)?;
+    let shown = |normal: [f32; 3], up: Vec3| -> Result<Vec<f32>, Box<dyn std::error::Error>> {
+        let crown = FallingDrop {
+            position: DVec3::new(0.0, 0.0, -0.4),
+            velocity: [0.0; 3],
+            diameter: 0.03,
+            id: 5,
+            kind: DropKind::Splash,
+            present_s: [-0.01, 0.03],
+            normal,
+        };
+        let rain = RainOptions { capture_size: 128, capture_grid: 1, ..RainOptions::default() };
+        let options =
+            PictureOptions { size: SIZE, grid: 1, sky_rays: 0, seed: 0, rain, ..PictureOptions::default() };
+        let picture = render_picture(&scene, &Viewpoint { up, ..viewpoint() }, &[crown], &masks, &options)?;
+        Ok(picture.rain.iter().map(|pixel| 1.0 - pixel[3]).collect())
+    };
+    let ground = shown([0.0, level, above], Vec3::Y)?;
+    let wall = shown([level, 0.0, above], Vec3::X)?;
+    let slope = shown([0.48, 0.64, above], Vec3::new(0.6, 0.8, 0.0))?;
+    assert!(ground.iter().sum::<f32>() > 500.0);
+    let away = |other: &[f32]| {
+        let differences: f32 = ground.iter().zip(other).map(|(a, b)| (a - b).abs()).sum();
+        differences / ground.iter().sum::<f32>()
+    };
+    // The normal is kept to a thousandth.
+    assert!(away(&wall) < 0.02 && away(&slope) < 0.02, "{} {}", away(&wall), away(&slope));
+    assert!(away(&shown([0.0, level, above], Vec3::X)?) > 0.2);
     Ok(())
 }
 

@@ -41,6 +41,7 @@ fn drawn(
         id: 5,
         kind: DropKind::Falling,
         present_s: FallingDrop::ALWAYS,
+        normal: FallingDrop::LEVEL,
     };
     let exposure = Exposure { shutter_s, samples, ..Exposure::default() };
     let light = DropLightOptions { form, glints: 8 };

@@ -33,7 +33,15 @@ fn scale(height: u32) -> f64 {
 
 fn drop_at(position: DVec3, diameter: f32, velocity: [f32; 3]) -> FallingDrop {
     let present_s = FallingDrop::ALWAYS;
-    FallingDrop { position, velocity, diameter, id: 1, kind: DropKind::Falling, present_s }
+    FallingDrop {
+        position,
+        velocity,
+        diameter,
+        id: 1,
+        kind: DropKind::Falling,
+        present_s,
+        normal: FallingDrop::LEVEL,
+    }
 }
 
 fn picture(

@@ -2,9 +2,8 @@
 
 use super::fault::Positions;
 use super::quantity::{Fraction, GlowWidth};
-use super::wind::keys::{NumberKeys, number_given};
+use super::wind::keys::{Given, NumberKeys, number_given};
 use downpour_scene::error::SceneError;
-use downpour_wind::Keyed;
 use serde::Deserialize;
 
 /// Default fraction of light that a lens scatters.
@@ -60,10 +59,7 @@ pub(super) struct GlowTable {
 
 impl GlowTable {
     /// The glow of time 0, and glare and width over time, of those that the file gives.
-    pub(super) fn checked(
-        &self,
-        positions: &Positions<'_>,
-    ) -> Result<(Glow, [Option<Keyed<f64>>; 2]), SceneError> {
+    pub(super) fn checked(&self, positions: &Positions<'_>) -> Result<(Glow, [Given; 2]), SceneError> {
         let default = Glow::default();
         let glare = number_given(self.glare.as_ref(), "glow.glare", positions)?;
         let width = number_given(self.width.as_ref(), "glow.width", positions)?;

@@ -1,8 +1,8 @@
 //! Values of a weather that change over time.
 
 use super::camera::CameraKeys;
-use super::lamps::LampKeys;
 use super::effect_keys::EffectKeys;
+use super::lamps::LampKeys;
 use super::look::{LookKeys, drop_exposure_s};
 use super::models::ModelKeys;
 use super::rain::most;
@@ -156,7 +156,9 @@ impl Weather {
     /// Models that change their place, by their index, at a time in seconds.
     pub fn models_at(&self, time_s: f64) -> impl Iterator<Item = (usize, Model)> {
         let keys = self.keys.models.iter();
-        keys.filter_map(move |(index, keys)| Some((*index, self.models.get(*index)?.clone().at(keys, time_s))))
+        keys.filter_map(move |(index, keys)| {
+            Some((*index, self.models.get(*index)?.clone().at(keys, time_s)))
+        })
     }
 
     /// Artistic multipliers at a time in seconds.

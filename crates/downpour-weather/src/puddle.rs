@@ -6,7 +6,7 @@ use super::quantity::{
     AttenuationM, Exactly, FieldCellMm, Fill, In, Influence, PositionM, PuddleDepthMm, PuddleM, PuddleReachM,
     ReliefMm, RippleScale, SeepageMmH, Tint, TurnDeg,
 };
-use super::wind::keys::{NumberKeys, number_given};
+use super::wind::keys::{Given, NumberKeys, number_given};
 use downpour_scene::error::SceneError;
 use downpour_scene::uri::RelativePath;
 use downpour_wind::Keyed;
@@ -128,7 +128,7 @@ impl Puddle {
         index: usize,
         table: &PuddleTable,
         positions: &Positions<'_>,
-    ) -> Result<(Self, [Option<Keyed<f64>>; 2]), SceneError> {
+    ) -> Result<(Self, [Given; 2]), SceneError> {
         let at = |name: &str| format!("puddle[{index}].{name}");
         let size = table.size_m.numbers();
         let meters = |given: Option<f64>, default_mm: f64| given.unwrap_or(default_mm) * 1.0e-3;

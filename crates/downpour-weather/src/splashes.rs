@@ -2,12 +2,11 @@
 
 use downpour_drop::splash::FILM_M;
 use downpour_scene::error::SceneError;
-use downpour_wind::Keyed;
 use serde::Deserialize;
 
 use super::fault::Positions;
 use super::quantity::{FilmMm, In, SplashSize};
-use super::wind::keys::{NumberKeys, number_given};
+use super::wind::keys::{Given, NumberKeys, number_given};
 
 /// Splashes where drops hit surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +31,7 @@ impl Splashes {
     pub(super) fn checked(
         table: &SplashesTable,
         positions: &Positions<'_>,
-    ) -> Result<(Self, Option<Keyed<f64>>), SceneError> {
+    ) -> Result<(Self, Given), SceneError> {
         let is_enabled = table.enabled.unwrap_or(true);
         let given = [("splashes.size", table.size.is_some()), ("splashes.film_mm", table.film_mm.is_some())];
         if let Some((key, _)) = given.iter().find(|(_, given)| *given && !is_enabled) {

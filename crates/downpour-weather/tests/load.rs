@@ -130,10 +130,12 @@ fn a_model_moves_by_its_keys() {
     }
     // Keys alone move a model, too; and other keys are another scene.
     let still = |keys: &str| {
-        let text = format!("[[model]]\nfile = 'models/swing.gltf'\nanimation_speed = 0\ntranslation_m = {keys}");
+        let text =
+            format!("[[model]]\nfile = 'models/swing.gltf'\nanimation_speed = 0\ntranslation_m = {keys}");
         Weather::parse("w.toml", &text).unwrap()
     };
-    let (first, second) = (still("[[0, [0, 0, 0]], [1, [1, 0, 0]]]"), still("[[0, [0, 0, 0]], [1, [2, 0, 0]]]"));
+    let (first, second) =
+        (still("[[0, [0, 0, 0]], [1, [1, 0, 0]]]"), still("[[0, [0, 0, 0]], [1, [2, 0, 0]]]"));
     assert_eq!(first.models, second.models);
     let loaded = load(&first, &files(), &mut Budget::default()).unwrap();
     assert_eq!(loaded.pose(&first, 0.5).instances[0].world.translation.x, 0.5);

@@ -94,6 +94,7 @@ fn streaks(count: u32, [width, length]: [f32; 2]) -> Streaks {
             id: u64::from(c) << 32 | u64::from(d),
             kind: DropKind::Falling,
             present_s: FallingDrop::ALWAYS,
+            normal: FallingDrop::LEVEL,
         });
     }
     let shutter_s = f64::from(way / SPEED);

@@ -240,6 +240,7 @@ impl Bench<'_> {
                 id: u64::from(index),
                 kind: DropKind::Falling,
                 present_s: FallingDrop::ALWAYS,
+                normal: FallingDrop::LEVEL,
             }
         };
         Ok((0..count).map(of).collect())

@@ -109,5 +109,6 @@ fn drop(frame_scene: &FrameScene, index: u32, diameter: f32) -> FallingDrop {
         id: u64::from(index),
         kind: DropKind::Falling,
         present_s: FallingDrop::ALWAYS,
+        normal: FallingDrop::LEVEL,
     }
 }

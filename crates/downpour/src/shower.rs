@@ -262,9 +262,7 @@ impl Shower {
                 let impacts = (splashes.as_ref(), Some(&self.bounce));
                 drops_among(field, &obstacles, &view, time_s, impacts)?
             }
-            Form::Stepped(stepped) => {
-                stepped.at(scenery, frame_scene, time_s, splashes.as_ref(), passed)?
-            }
+            Form::Stepped(stepped) => stepped.at(scenery, frame_scene, time_s, splashes.as_ref(), passed)?,
         };
         let view = View { max_drops: self.weather.rain.max_drops, ..frame_scene.view()? };
         let least = drips_least(&self.weather.rain, &visible.resolved);

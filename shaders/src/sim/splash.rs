@@ -34,8 +34,8 @@ shared_constants! {
         SPLASH_LOW: u32 = 4089235721;
         /// The upper half.
         SPLASH_HIGH: u32 = 1779033703;
-        /// Least vertical component of the normal of a surface on which crowns stand.
-        SPLASH_LEVEL: f32 = 0.8;
+        /// Least vertical component of the normal of a surface on which crowns stand: that of a wall, to the digits of its vertices.
+        SPLASH_LEVEL: f32 = -0.02;
         /// Longest duration of a crown, s.
         SPLASH_MAX_S: f32 = 0.055;
         /// Time around a hit in which the same hit is found again, s.

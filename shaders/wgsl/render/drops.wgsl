@@ -106,7 +106,10 @@ fn drops_still(index: u32, drop: ScreenDrop, x: u32, y: u32) -> vec4f {
     if small && spread <= 0.0 {
         return vec4f(0.0);
     }
-    let right = drop_glint_right(drop.towards);
+    var right = drop_glint_right(drop.towards);
+    if drops_is_splash(drop) {
+        right = right * drop.cycles.x - cross(right, drop.towards) * drop.cycles.y;
+    }
     let up = cross(right, drop.towards);
     let n = select(drop.grid, DROPS_SMALL_GRID, small);
     let extent = drop.half_extent * drop.slope;
@@ -125,7 +128,7 @@ fn drops_still(index: u32, drop: ScreenDrop, x: u32, y: u32) -> vec4f {
             sy = dot(lean, up) / extent;
         }
         if abs(sx) < 1.0 && abs(sy) < 1.0 {
-            var shown = drops_shade_ray(DropsShade(drop.towards, drop.half_extent, lean, spacing, drop.mask_index), sx, sy);
+            var shown = drops_shade_ray(DropsShade(drop.towards, drop.half_extent, right, lean, spacing, drop.mask_index), sx, sy);
             if !small {
                 var light: vec3f;
                 if drops_is_splash(drop) {
@@ -156,7 +159,7 @@ fn drops_still(index: u32, drop: ScreenDrop, x: u32, y: u32) -> vec4f {
 fn drops_chord(index: u32, drop: ScreenDrop, chord: StreakChord, ray: vec3f) -> vec4f {
     let towards = drops_mask_unit(ray);
     let spacing = 2.0 * drop.oval.x / f32(STREAK_FINE);
-    let shade = DropsShade(towards, drop.half_extent, vec3f(0.0), spacing, drop.mask_index);
+    let shade = DropsShade(towards, drop.half_extent, drop_glint_right(towards), vec3f(0.0), spacing, drop.mask_index);
     var sum = vec4f(0.0);
     for (var k = 0u; k < drops_frame.streak_samples; k += 1u) {
         let part = (f32(k) + 0.5) / f32(drops_frame.streak_samples);

@@ -13,6 +13,8 @@ struct DropsShade {
     towards: vec3f,
     // Half the width of its mask, in equivalent radii.
     half_extent: f32,
+    // Right of its mask, of length 1.
+    right: vec3f,
     // Difference of the ray from `towards` at the same distance along it.
     lean: vec3f,
     // Equivalent radii between samples.
@@ -32,7 +34,7 @@ fn drops_shade_ray(drop: DropsShade, x: f32, y: f32) -> vec4f {
     if texel.coverage <= 0.0 {
         return vec4f(0.0);
     }
-    let right = drop_glint_right(drop.towards);
+    let right = drop.right;
     let up = cross(right, drop.towards);
     // A sphere's deviation 2 (asin q - asin(q / n)) and its derivative, for the footprint.
     let q = min((x * x + y * y) * drop.half_extent * drop.half_extent, 0.98);

@@ -39,7 +39,7 @@ struct GlassPictureFrame {
     capture_last: u32,
     // Angle of a texel of the capture.
     capture_texel: f32,
-    // Height of the film where glass is as wet as it can be, m.
+    // Height of the film where glass_picture_wet is largest, m; 0 for no film.
     film: f32,
     // Refractive indices.
     water: f32,
@@ -70,7 +70,7 @@ struct GlassPictureHit {
 @group(0) @binding(1) var<storage, read> glass_picture_drops: array<GlassPictureDrop>;
 // First the indices at which the lists of the bins begin (one more than there are bins), then the lists.
 @group(0) @binding(2) var<storage, read> glass_picture_bins: array<u32>;
-// Wetness of the cells, four to a word.
+// Height of the film of the cells, 65535 for the largest: two to a word.
 @group(0) @binding(3) var<storage, read> glass_picture_wet: array<u32>;
 @group(0) @binding(4) var<storage, read> glass_picture_lens: array<vec4f>;
 @group(0) @binding(5) var<storage, read> glass_picture_behind: array<vec4f>;
@@ -79,14 +79,14 @@ struct GlassPictureHit {
 // Those that shine on the pane, at least one.
 @group(0) @binding(8) var<storage, read> glass_picture_sources: array<GlassPictureLight>;
 
-// Wetness of a cell, 0 to 1.
+// Height of the film of a cell, 0 to 1.
 fn glass_picture_wetness(column: i32, row: i32) -> f32 {
     let size = vec2i(glass_picture_frame.wet_size);
     let x = u32(clamp(column, 0, size.x - 1));
     let y = u32(clamp(row, 0, size.y - 1));
     let index = y * glass_picture_frame.wet_size.x + x;
-    let byte = (glass_picture_wet[index / 4u] >> (8u * (index % 4u))) & 255u;
-    return f32(byte) / 255.0;
+    let height = (glass_picture_wet[index / 2u] >> (16u * (index % 2u))) & 65535u;
+    return f32(height) / 65535.0;
 }
 
 // Height of the film and its slopes: the quadratic B-spline over the cells.

@@ -2,8 +2,8 @@
 // Method: during the exposure a drop moves along a straight line, past an eye that moves and turns. Its path is cut to the part that
 // is before the eye and in which the drop is there. What a drop looks like depends on its diameter and on how far above or below
 // the eye it is: both are looked up in tables of the masks.
-// A splash stands where the drop met the surface, at the stage of the picture's time: it has rows of its own behind those of the
-// diameters, for stages and for elevations from level to straight above.
+// A splash stands on the surface where the drop met it, along its normal, at the stage of the picture's time: it has rows of its own
+// behind those of the diameters, for stages and for elevations above the surface from level to straight above.
 // Frequencies of the oscillation are integers, between the entries of a table, so that phases are the same on every device at any
 // time (oscillation.wgsl).
 // Twin: downpour_render::rain::project.
@@ -233,7 +233,17 @@ fn project_lookup(diameter: f32, elevation: f32) -> ProjectMask {
     return project_mask(vec2f(row, select(turned, half_turn, is_sphere)));
 }
 
-// Position among the masks of a splash that is seen from `elevation` radians above it, at the picture's time.
+// The turn of a splash on the picture: how far its normal goes along the up and the right of its view.
+fn project_turn(normal: vec3f, right: vec3f, up: vec3f) -> vec2f {
+    let turn = vec2f(dot(normal, up), dot(normal, right));
+    let size = sqrt(dot(turn, turn));
+    if turn.y == 0.0 || size < 1.0e-3 {
+        return vec2f(select(1.0, -1.0, turn.x < 0.0), 0.0);
+    }
+    return turn / size;
+}
+
+// Position among the masks of a splash that is seen from `elevation` radians above its surface, at the picture's time.
 fn project_splash(present: vec2f, elevation: f32) -> ProjectMask {
     let stage = clamp(-present.x / max(present.y - present.x, 1.0e-9), 0.0, 1.0);
     let rise = PROJECT_SPLASH_TOP * min(stage / SPLASH_RISE_SHARE, 1.0);
@@ -322,7 +332,13 @@ fn project_drop(drop: EyeDrop) -> ProjectShown {
     if !path.is_there {
         return shown;
     }
-    let elevation = asin(clamp(-towards.y, -1.0, 1.0));
+    let right = drop_glint_right(towards);
+    let up = cross(right, towards);
+    var normal = vec3f(0.0, 1.0, 0.0);
+    if is_splash {
+        normal = eye_drop_normal(drop.speed);
+    }
+    let elevation = asin(clamp(-dot(towards, normal), -1.0, 1.0));
     var mask: ProjectMask;
     if is_splash {
         mask = project_splash(drop.present, elevation);
@@ -345,8 +361,7 @@ fn project_drop(drop: EyeDrop) -> ProjectShown {
     }
     let larger = distance / path.nearest;
     let sampled = mask.half_extent * pixels * larger * (1.0 + modes.most) / cosine * 1.02 + 1.0;
-    let right = drop_glint_right(towards);
-    let up = cross(right, towards);
+    let cycles = select(modes.cycles, project_turn(normal, right, up), is_splash);
     let start = vec2f(dot(path.first, right), dot(path.first, up)) / dot(path.first, towards);
     let end = vec2f(dot(path.last, right), dot(path.last, up)) / dot(path.last, towards);
     let first = camera_project(camera, path.first);
@@ -367,7 +382,7 @@ fn project_drop(drop: EyeDrop) -> ProjectShown {
         mask.oval,
         path.depth_ratio,
         modes.mode_phase,
-        modes.cycles,
+        cycles,
         path.part.y - path.part.x,
         spread,
         path.nearest - 2.0 * radius,

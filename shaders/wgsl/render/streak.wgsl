@@ -42,7 +42,7 @@ struct ScreenDrop {
     // Amplitudes of the modes (2,0) and (3,1), the latter times the cosine of its azimuth, and phases at the beginning, in
     // turns.
     mode_phase: vec4f,
-    // Turns of both modes until the end.
+    // Turns of both modes until the end; of a splash its own turn on the picture (project_turn).
     cycles: vec2f,
     // Fraction of the exposure in which it is before the eye.
     fraction: f32,

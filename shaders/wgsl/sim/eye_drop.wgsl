@@ -12,10 +12,33 @@ struct EyeDrop {
     id: u32,
     // When it is there, s from the time of the picture.
     present: vec2f,
-    // Terminal speed, m/s; below 0 (FIELD_SPLASH) for a splash, 0 (FIELD_BOUNCED) for a droplet that rebounded.
+    // Terminal speed, m/s; 0 (FIELD_BOUNCED) for a droplet that rebounded; of a splash the normal of its surface (eye_drop_standing),
+    // which is FIELD_SPLASH or below.
     speed: f32,
     // Lower half of its id.
     id_low: u32,
+}
+
+// The normal of a surface that does not look down, as a whole number of FIELD_SPLASH or below: two numbers of the upper half of an
+// octahedron, unfolded.
+fn eye_drop_standing(normal: vec3f) -> f32 {
+    let steps = f32(FIELD_NORMAL_STEPS);
+    let size = max(abs(normal.x) + abs(normal.y) + abs(normal.z), 1.0e-20);
+    let first = clamp((normal.x + normal.z) / size, -1.0, 1.0);
+    let second = clamp((normal.x - normal.z) / size, -1.0, 1.0);
+    return FIELD_SPLASH - ((floor(first * steps + 0.5) + steps) * (2.0 * steps + 1.0) + floor(second * steps + 0.5) + steps);
+}
+
+// The normal of the surface on which a splash stands.
+fn eye_drop_normal(speed: f32) -> vec3f {
+    let width = 2u * FIELD_NORMAL_STEPS + 1u;
+    let code = u32(max(FIELD_SPLASH - speed, 0.0));
+    let first = (f32(code / width) - f32(FIELD_NORMAL_STEPS)) / f32(FIELD_NORMAL_STEPS);
+    let second = (f32(code % width) - f32(FIELD_NORMAL_STEPS)) / f32(FIELD_NORMAL_STEPS);
+    let x = 0.5 * (first + second);
+    let z = 0.5 * (first - second);
+    let normal = vec3f(x, max(1.0 - abs(x) - abs(z), 0.0), z);
+    return normal / sqrt(dot(normal, normal));
 }
 
 // A vector turned about an axis by the axis's length, in radians.

@@ -61,8 +61,7 @@ fn splash_crown(drop: EyeDrop, normal: vec3f) -> EyeDrop {
     let chance = rng_unit(rng_draw(vec2u(drop.id_low, drop.id ^ drop.id_low), 0u, 0u, SPLASH_SIZE).x);
     let random = SPLASH_MIN_SIZE + (SPLASH_MAX_SIZE - SPLASH_MIN_SIZE) * chance;
     let radius = splash_frame.radius * drop.diameter * sqrt(sqrt(drop.diameter)) * random;
-    let offset = drop.offset + drop.velocity * drop.present.y
-        + vec3f(0.0, radius * splash_middle(age / duration), 0.0);
+    let offset = drop.offset + drop.velocity * drop.present.y + normal * (radius * splash_middle(age / duration));
     let range = min(radius * splash_frame.per_radius, splash_frame.farthest);
     if sqrt(dot(offset, offset)) >= range || dot(splash_frame.pane.xyz, offset) < splash_frame.pane.w {
         return crown;
@@ -79,7 +78,7 @@ fn splash_crown(drop: EyeDrop, normal: vec3f) -> EyeDrop {
         vec3f(0.0),
         drop.id ^ SPLASH_HIGH ^ SPLASH_LOW,
         vec2f(-age, duration - age),
-        FIELD_SPLASH,
+        eye_drop_standing(normal),
         drop.id_low ^ SPLASH_LOW,
     );
 }

@@ -223,7 +223,7 @@ fn step_coming(at: vec3f, speed: f32) -> vec3f {
     return motion_settled(kept + lag, speed);
 }
 
-// True if an impact may make a splash: that of a drop that fell, on a surface that is not steep.
+// True if an impact may make a splash: that of a drop that fell, on a surface that does not look down.
 fn step_splashes(event: StepEvent) -> bool {
     return event.drop >> STEP_EVENT_KIND == 0u && packing_octahedral_decode(event.normal).y >= SPLASH_LEVEL;
 }

@@ -11,13 +11,15 @@ use downpour_render::gpu::LightingOnGpu;
 use downpour_shaders::Kernel;
 use downpour_shaders::render::scene::{SCENE_DOUBLE_SIDED, SCENE_MASKED};
 use downpour_shaders::sim::field::{
-    DRIFT, EYE_DROP, FIELD, FIELD_CLEAR_KERNEL, FIELD_FIND_KERNEL, SHELTER_AMONG_HOLES_KERNEL, SHELTER_KERNEL,
+    DRIFT, EYE_DROP, FIELD, FIELD_CLEAR_KERNEL, FIELD_FIND_KERNEL, FIELD_NORMAL_STEPS, FIELD_SPLASH,
+    SHELTER_AMONG_HOLES_KERNEL, SHELTER_KERNEL,
 };
 use downpour_shaders::sim::splash::{SPLASH, SPLASH_FIND_KERNEL};
 use downpour_sim::field::chain::{FieldTime, field_between, field_fallen, field_fraction, field_part};
 use downpour_sim::field::thinning::{field_interval, field_is_below, field_less};
 use downpour_sim::field::{
-    EyeDrop, FallingDrop, RainField, drift_position, eye_drop_outside, eye_drop_turned,
+    EyeDrop, FallingDrop, RainField, drift_position, eye_drop_normal, eye_drop_outside, eye_drop_standing,
+    eye_drop_turned,
 };
 use downpour_sim::gpu::{FieldPipeline, FieldSearch, GpuSimError, HolesOnGpu, ObstaclesOnGpu};
 use downpour_sim::impacts::SplashOptions;
@@ -54,6 +56,14 @@ fn near(random: [u32; 4]) -> Vec<u32> {
     vec![(random[0] % 5).wrapping_sub(2), random[1] % 3]
 }
 
+/// A normal of a splash as its speed; some are none.
+fn standing(random: [u32; 4]) -> Vec<u32> {
+    let width = 2 * FIELD_NORMAL_STEPS + 1;
+    let speed =
+        if random[1].is_multiple_of(16) { 3.0 } else { FIELD_SPLASH - (random[0] % (width * width)) as f32 };
+    vec![speed.to_bits()]
+}
+
 /// The cases.
 #[must_use]
 pub(super) fn functions() -> Vec<FunctionCase> {
@@ -66,6 +76,21 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &[Unit3, axis[0], axis[1], axis[2]],
             Tol::absolute(4.0e-3, "sines and cosines (2^-11) of up to 3.5 radians, three terms"),
             |a| eye_drop_turned(Vec3::from(a.f32s()), Vec3::from(a.f32s())).to_array().words(),
+        ),
+        FunctionCase::new(
+            "eye_drop_standing",
+            &EYE_DROP,
+            &[Unit3],
+            Tol::exact("whole numbers, of quotients (2.5 ulp) at whose half another one begins")
+                .with_outliers(4.0e-3),
+            |a| eye_drop_standing(Vec3::from(a.f32s())).words(),
+        ),
+        FunctionCase::new(
+            "eye_drop_normal",
+            &EYE_DROP,
+            &[Made(standing)],
+            Tol::absolute(2.0e-6, "quotients (2.5 ulp) of at most 1, sums of two and a root of three"),
+            |a| eye_drop_normal(a.f32()).to_array().words(),
         ),
         FunctionCase::new(
             "drift_position",

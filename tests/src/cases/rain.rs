@@ -90,6 +90,7 @@ fn drops(eye: Vec3, forward: Vec3) -> Vec<FallingDrop> {
                 id: u64::from(k),
                 kind: DropKind::Falling,
                 present_s: FallingDrop::ALWAYS,
+                normal: FallingDrop::LEVEL,
             }
         })
         .collect()

@@ -75,9 +75,8 @@ fn traffic(street: &Street) -> String {
     let keys = (0..=steps).map(|step| {
         let z = first + 2.0 * step as f32;
         let wheels = [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)];
-        let height = |(a, b): (f32, f32)| {
-            street.road_height_m(CAR_X_M + a * WHEELS_M[0], z + b * WHEELS_M[1])
-        };
+        let height =
+            |(a, b): (f32, f32)| street.road_height_m(CAR_X_M + a * WHEELS_M[0], z + b * WHEELS_M[1]);
         let mean = wheels.map(height).iter().sum::<f32>() / 4.0;
         format!("[{:.3}, [{CAR_X_M}, {mean:.3}, {z}]]", (z - first) / CAR_M_S)
     });

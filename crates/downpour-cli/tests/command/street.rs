@@ -24,7 +24,8 @@ fn a_seed_is_a_street() {
 #[test]
 fn a_car_is_a_model_that_drives() {
     let glb = |arguments: &[&str]| {
-        let ended = Downpour::new(&[&["street", "-q", "-o", "car.glb"], arguments].concat()).run().succeeded();
+        let ended =
+            Downpour::new(&[&["street", "-q", "-o", "car.glb"], arguments].concat()).run().succeeded();
         std::fs::read(ended.folder.path().join("car.glb")).unwrap()
     };
     let car = glb(&["--car", "2", "--night"]);
@@ -33,7 +34,9 @@ fn a_car_is_a_model_that_drives() {
     let check = Downpour::new(&["check", "w.toml", "--json"]).with_file("car.glb", car);
     let json = check.with_file("w.toml", text).run().succeeded().json();
     assert_eq!((&json["lamps"], &json["animations_playing"][0]), (&2.into(), &"roll".into()), "{json}");
-    Downpour::new(&["street", "--car", "6", "-o", "car.glb"]).run().failed(2, &["paint: 6", "allowed: 0 to 5"]);
+    Downpour::new(&["street", "--car", "6", "-o", "car.glb"])
+        .run()
+        .failed(2, &["paint: 6", "allowed: 0 to 5"]);
     Downpour::new(&["street", "--car", "1", "--seed", "1", "-o", "car.glb"]).run().failed(2, &["--seed"]);
 }
 

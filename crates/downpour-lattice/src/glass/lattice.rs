@@ -159,6 +159,11 @@ impl Glass {
         (0..self.cells.wet.len() as u32).map(of).collect()
     }
 
+    /// Times when water last moved over the cells, by the clock of the ticks.
+    fn clocks(&self) -> Vec<u32> {
+        (0..self.cells.wet.len() as u32).map(|i| load(&self.cells.wet, i)).collect()
+    }
+
     /// The water on the pane now.
     #[must_use]
     pub fn state(&self) -> GlassState {
@@ -166,6 +171,7 @@ impl Glass {
             mass: self.cells.mass.clone(),
             motion: self.cells.motion.clone(),
             traversal: self.traversal(),
+            tails: self.plan.tails(&self.clocks()),
         }
     }
 

@@ -16,6 +16,7 @@ use super::lattice::UNIT_M3;
 use super::options::{GlassAir, GlassOptions, GlassRain};
 use super::rain::{BLOCK, Landing, MAX_PER_BLOCK};
 use super::size::{GlassSizeRow, GlassTable, glass_size_floor};
+use super::tail::TailLaw;
 use super::wiper::GlassWiper;
 
 /// Clock ticks per second.
@@ -37,6 +38,7 @@ pub(crate) struct Plan {
     tick_s: f64,
     frame: GlassFrame,
     pub(crate) table: Box<GlassTable>,
+    tail: TailLaw,
     done: u64,
     backlog_s: f64,
 }
@@ -63,6 +65,7 @@ impl Plan {
             options: options.clone(),
             tick_s,
             table,
+            tail: TailLaw::new(options, CLOCK_HZ)?,
             done: 0,
             backlog_s: 0.0,
         })
@@ -92,6 +95,11 @@ impl Plan {
 
     pub(crate) fn options(&self) -> &GlassOptions {
         &self.options
+    }
+
+    /// Tails of running drops, from the times when water last moved over the cells.
+    pub(crate) fn tails(&self, clocks: &[u32]) -> Vec<u16> {
+        self.tail.tails(self.options.size[0] as usize, clocks, self.frame.first_clock)
     }
 
     pub(crate) fn frame(&self) -> &GlassFrame {

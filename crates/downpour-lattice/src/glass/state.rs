@@ -9,4 +9,6 @@ pub struct GlassState {
     pub motion: Vec<[u32; 2]>,
     /// Wetness where water has passed, 0 to 255.
     pub traversal: Vec<u8>,
+    /// Thickness of the water that tracks of running drops still hold, in units of 10 nm.
+    pub tails: Vec<u16>,
 }

@@ -143,8 +143,10 @@ impl GpuGlass {
     pub fn state(&self) -> Result<GlassState, GpuError> {
         let Buffers { mass, motion, wet, .. } = &self.buffers;
         let mut read = self.readbacks.begin(&self.gpu, &[mass, motion, wet])?;
-        let traversal = read.take::<u32>(2)?.into_iter().map(|last| wetness(self.plan.frame(), last));
-        Ok(GlassState { traversal: traversal.collect(), mass: read.take(0)?, motion: read.take(1)? })
+        let clocks = read.take::<u32>(2)?;
+        let traversal = clocks.iter().map(|&last| wetness(self.plan.frame(), last)).collect();
+        let tails = self.plan.tails(&clocks);
+        Ok(GlassState { traversal, tails, mass: read.take(0)?, motion: read.take(1)? })
     }
 
     fn submit(&self, ticks: &Ticks, first: u32, count: u32) -> Result<(), GpuError> {

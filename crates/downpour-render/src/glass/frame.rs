@@ -63,7 +63,7 @@ pub struct GlassPictureFrame {
     pub capture_last: u32,
     /// Angle of a texel of the capture.
     pub capture_texel: f32,
-    /// Height of the film where glass is as wet as it can be, m.
+    /// Height of the film where [`GlassPicture::wet`] is largest, m; 0 for no film.
     pub film: f32,
     /// Refractive index of water.
     pub water: f32,
@@ -92,7 +92,7 @@ pub struct GlassPicture {
     pub drops: Vec<GlassPictureDrop>,
     /// Index of the beginning of each bin's list of drops (one more than there are bins), then the lists.
     pub bins: Vec<u32>,
-    /// Wetness of the cells, four to a word.
+    /// Height of the film of the cells, 65535 for `frame.film`: two to a word.
     pub wet: Vec<u32>,
     /// Samples: a place of the lens, in its radius, and of the pixel.
     pub lens: Vec<[f32; 4]>,

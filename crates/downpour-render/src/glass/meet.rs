@@ -28,14 +28,14 @@ pub fn glass_picture_spline(t: f32, which: i32) -> Vec2 {
 }
 
 impl PaneTracer<'_> {
-    /// Wetness of a cell, 0 to 1.
+    /// Height of the film of a cell, 0 to 1.
     fn glass_picture_wetness(&self, column: i32, row: i32) -> f32 {
         let [width, height] = self.glass.frame.wet_size;
         let x = column.clamp(0, width as i32 - 1) as u32;
         let y = row.clamp(0, height as i32 - 1) as u32;
         let index = y * width + x;
-        let byte = (self.glass.wet[index as usize / 4] >> (8 * (index % 4))) & 255;
-        byte as f32 / 255.0
+        let height = (self.glass.wet[index as usize / 2] >> (16 * (index % 2))) & 65535;
+        height as f32 / 65535.0
     }
 
     /// Height of the film and its slopes: the quadratic B-spline over the cells.

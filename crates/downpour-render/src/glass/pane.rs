@@ -254,12 +254,11 @@ impl WetPane {
         let lens_points = samples(grid, lens);
         let [columns, rows] = options.size;
         let hidden = (columns * self.above) as usize;
-        let wet = self.state()?.traversal.get(hidden..).unwrap_or_default();
+        let state = self.state()?;
+        let visible = state.traversal.iter().zip(&state.tails).skip(hidden);
+        let heights: Vec<u32> = visible.map(|(&wet, &tail)| film_units(self.pane.film, wet, tail)).collect();
         let (blades, blade_count) = self.blades(shutter_s);
         let lights = sources(lighting, camera.eye);
-        let word = |bytes: &[u8]| {
-            bytes.iter().enumerate().fold(0u32, |word, (k, &byte)| word | (u32::from(byte) << (8 * k)))
-        };
         Ok(GlassPicture {
             frame: GlassPictureFrame {
                 camera: *camera,
@@ -288,7 +287,7 @@ impl WetPane {
                 capture_size,
                 capture_last: capture_size.ilog2(),
                 capture_texel: ((4.0 * PI).sqrt() / f64::from(capture_size)) as f32,
-                film: self.pane.film as f32,
+                film: if self.pane.film > 0.0 { MAX_FILM_M } else { 0.0 },
                 water: self.water as f32,
                 first_row: 0,
                 lights: lights.len() as u32,
@@ -301,11 +300,20 @@ impl WetPane {
             // A buffer has at least one element.
             drops: if binned.drops.is_empty() { vec![Default::default()] } else { binned.drops },
             bins: binned.bins,
-            wet: wet.chunks(4).map(word).collect(),
+            wet: heights.chunks(2).map(|pair| pair[0] | (pair.get(1).unwrap_or(&0) << 16)).collect(),
             lens: lens_points,
             lights: if lights.is_empty() { vec![GlassPictureLight::default()] } else { lights },
         })
     }
+}
+
+/// Largest height of the film and the tails of drops, m.
+const MAX_FILM_M: f32 = 655.35e-6;
+
+/// Height of the film of a cell in units of 10 nm: that of its wetness, of `film_m` at most, and the tail of a drop.
+fn film_units(film_m: f64, wet: u8, tail: u16) -> u32 {
+    let film = (film_m * 1.0e8 * f64::from(wet) / 255.0).round() as u32;
+    film.saturating_add(u32::from(tail)).min(65535)
 }
 
 /// Returns the plane of a weather's pane in front of an eye, if there is one.

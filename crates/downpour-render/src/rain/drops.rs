@@ -192,7 +192,10 @@ impl Buffers<'_> {
             return Vec4::ZERO;
         }
         let towards = Vec3::from(drop.towards);
-        let right = drop_glint_right(towards);
+        let mut right = drop_glint_right(towards);
+        if drops_is_splash(drop) {
+            right = right * drop.cycles[0] - right.cross(towards) * drop.cycles[1];
+        }
         let up = right.cross(towards);
         let n = if small { DROPS_SMALL_GRID } else { drop.grid };
         let extent = drop.half_extent * drop.slope;
@@ -216,6 +219,7 @@ impl Buffers<'_> {
                 let shade = DropsShade {
                     towards,
                     half_extent: drop.half_extent,
+                    right,
                     lean,
                     spacing,
                     mask_index: drop.mask_index,
@@ -252,6 +256,7 @@ impl Buffers<'_> {
         let shade = DropsShade {
             towards: drops_mask_unit(ray),
             half_extent: drop.half_extent,
+            right: drop_glint_right(drops_mask_unit(ray)),
             lean: Vec3::ZERO,
             spacing: 2.0 * drop.oval[0] / STREAK_FINE as f32,
             mask_index: drop.mask_index,

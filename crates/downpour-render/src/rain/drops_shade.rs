@@ -6,7 +6,6 @@ use glam::{Vec2, Vec3, Vec4};
 
 use super::drops_frame::DropsView;
 use super::drops_mask::DropsTexel;
-use super::glint::drop_glint_right;
 
 /// A drop as a ray meets it.
 #[derive(Clone, Copy, Debug)]
@@ -15,6 +14,8 @@ pub(super) struct DropsShade {
     pub(super) towards: Vec3,
     /// Half the width of its mask, in equivalent radii.
     pub(super) half_extent: f32,
+    /// Right of its mask, of length 1.
+    pub(super) right: Vec3,
     /// Difference of the ray from `towards` at the same distance along it.
     pub(super) lean: Vec3,
     /// Equivalent radii between samples.
@@ -35,7 +36,7 @@ impl DropsView<'_> {
         if texel.coverage <= 0.0 {
             return Vec4::ZERO;
         }
-        let right = drop_glint_right(drop.towards);
+        let right = drop.right;
         let up = right.cross(drop.towards);
         // A sphere's deviation 2 (asin q - asin(q / n)) and its derivative, for the footprint.
         let q = ((x * x + y * y) * drop.half_extent * drop.half_extent).min(0.98);

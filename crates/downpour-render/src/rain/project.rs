@@ -13,7 +13,7 @@ use downpour_shaders::render::rain::{
     PROJECT_NARROW, PROJECT_NARROW_SAMPLES, PROJECT_OSCILLATES_MAX, PROJECT_OSCILLATES_MIN, PROJECT_SMALL,
     PROJECT_STILL, PROJECT_THIN, PROJECT_WIDE_SAMPLES, STREAK_TURN,
 };
-use downpour_sim::field::EyeDrop;
+use downpour_sim::field::{EyeDrop, eye_drop_normal};
 use glam::{Vec2, Vec3};
 
 use super::exposure::{StreakSamples, TemporalResponse};
@@ -360,7 +360,10 @@ impl<'a> Projector<'a> {
             return None;
         }
         let path = self.project_path(drop, offset, present, is_splash)?;
-        let elevation = ops::asin((-towards.y).clamp(-1.0, 1.0));
+        let right = drop_glint_right(towards);
+        let up = right.cross(towards);
+        let normal = if is_splash { eye_drop_normal(drop.speed) } else { Vec3::Y };
+        let elevation = ops::asin((-towards.dot(normal)).clamp(-1.0, 1.0));
         let mask = if is_splash {
             self.masks.project_splash(drop.present, elevation)
         } else {
@@ -385,8 +388,7 @@ impl<'a> Projector<'a> {
             mask.half_extent * pixels * larger * (1.0 + modes.most) / cosine * 1.02 + 1.0
         };
         let [first, last] = path.ends.map(|p| camera.camera_project(p));
-        let right = drop_glint_right(towards);
-        let up = right.cross(towards);
+        let cycles = if is_splash { project_turn(normal, right, up) } else { modes.cycles };
         let [start, end] = path.ends.map(|p| Vec2::new(p.dot(right), p.dot(up)) / p.dot(towards));
         let shown = ScreenDrop {
             towards: towards.into(),
@@ -404,7 +406,7 @@ impl<'a> Projector<'a> {
             oval: mask.oval,
             depth_ratio: path.depth_ratio,
             mode_phase: modes.mode_phase,
-            cycles: modes.cycles,
+            cycles,
             fraction: path.part[1] - path.part[0],
             spread,
             nearest: path.nearest - 2.0 * radius,
@@ -420,4 +422,15 @@ impl<'a> Projector<'a> {
         };
         Some(Projected { drop: shown, velocity: path.velocity })
     }
+}
+
+/// The turn of a splash on the picture: how far its normal goes along the up and the right of its view.
+#[must_use]
+pub fn project_turn(normal: Vec3, right: Vec3, up: Vec3) -> [f32; 2] {
+    let turn = Vec2::new(normal.dot(up), normal.dot(right));
+    let size = turn.length();
+    if turn.y == 0.0 || size < 1.0e-3 {
+        return [if turn.x < 0.0 { -1.0 } else { 1.0 }, 0.0];
+    }
+    (turn / size).to_array()
 }

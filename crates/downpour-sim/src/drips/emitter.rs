@@ -213,6 +213,7 @@ impl Emitter {
                 id: self.id(drop),
                 kind: DropKind::Dripped,
                 present_s: [-age, until - age].map(|time| time as f32),
+                normal: FallingDrop::LEVEL,
             });
         }
         if !self.is_jet {
@@ -241,6 +242,7 @@ impl Emitter {
                         id: self.id(drop),
                         kind: DropKind::Dripped,
                         present_s: [since, leaves].map(|time| (time - time_s) as f32),
+                        normal: FallingDrop::LEVEL,
                     });
                 }
             }

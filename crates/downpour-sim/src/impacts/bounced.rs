@@ -118,6 +118,7 @@ impl RainField {
                 id: id ^ DROPLET,
                 kind: DropKind::Bounced,
                 present_s: [-age, until].map(|time| time as f32),
+                normal: FallingDrop::LEVEL,
             };
             drop.position += velocity * f64::from(drop.seen_s());
             (until > -half).then_some(drop)

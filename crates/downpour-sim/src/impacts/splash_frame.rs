@@ -4,7 +4,7 @@
 use bytemuck::{Pod, Zeroable};
 use downpour_bvh::BvhTriangle;
 use downpour_math::rng::{rng_draw, rng_unit};
-use downpour_shaders::sim::field::{FIELD_SIDES, FIELD_SPLASH};
+use downpour_shaders::sim::field::FIELD_SIDES;
 use downpour_shaders::sim::splash::{
     SPLASH_FINGERS, SPLASH_HIGH, SPLASH_LEVEL, SPLASH_LOW, SPLASH_MAX_S, SPLASH_MAX_SIZE, SPLASH_MIN_SIZE,
     SPLASH_RISE_SHARE, SPLASH_RISE_TIMES, SPLASH_SIZE, SPLASH_THRESHOLD, SPLASH_WALL,
@@ -13,7 +13,7 @@ use glam::Vec3;
 
 use super::SplashOptions;
 use super::splashes::MIN_PIXELS;
-use crate::falling::EyeDrop;
+use crate::falling::{EyeDrop, eye_drop_standing};
 use crate::view::{View, side_rows};
 
 /// Uniforms of the crowns of a picture, of the impacts of a slice of time if a device searches for them.
@@ -107,7 +107,7 @@ impl SplashFrame {
         let random = SPLASH_MIN_SIZE + (SPLASH_MAX_SIZE - SPLASH_MIN_SIZE) * chance;
         let radius = self.radius * drop.diameter * drop.diameter.sqrt().sqrt() * random;
         let offset =
-            Vec3::from(drop.offset) + velocity * met + Vec3::Y * (radius * splash_middle(age / duration));
+            Vec3::from(drop.offset) + velocity * met + normal * (radius * splash_middle(age / duration));
         let range = (radius * self.per_radius).min(self.farthest);
         let [x, y, z, distance] = self.pane;
         // The mask reaches beyond the largest radius, to the droplets of the rim.
@@ -121,7 +121,7 @@ impl SplashFrame {
             velocity: [0.0; 3],
             id: drop.id ^ SPLASH_HIGH ^ SPLASH_LOW,
             present: [-age, duration - age],
-            speed: FIELD_SPLASH,
+            speed: eye_drop_standing(normal),
             id_low: drop.id_low ^ SPLASH_LOW,
         })
     }

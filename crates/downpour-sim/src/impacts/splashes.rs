@@ -26,7 +26,7 @@ const SIZES: [f64; 2] = [SPLASH_MIN_SIZE as f64, SPLASH_MAX_SIZE as f64];
 /// Crowns are drawn from this width on the picture on, in pixels: below, they are no more than the texture of the ground.
 pub(super) const MIN_PIXELS: f64 = 3.0;
 
-/// Least vertical component of the normal of a surface on which crowns stand: on steeper ones a drop spreads downhill.
+/// Least vertical component of the normal of a surface on which crowns stand: none hang from what looks down.
 const LEVEL: f32 = SPLASH_LEVEL;
 
 /// Longest duration of a crown, s: that of a drop of 5 mm at terminal speed.
@@ -45,8 +45,8 @@ pub struct SplashOptions {
 }
 
 impl RainField {
-    /// Crowns of splashes that a picture shows at a time in seconds: of drops that have hit a surface that is not steep, from 3
-    /// pixels wide on. They stand where the drop hit until they have fallen back; what moves under them meanwhile leaves them. Of more
+    /// Crowns of splashes that a picture shows at a time in seconds: of drops that have hit a surface that does not look down, from 3
+    /// pixels wide on. They stand along its normal where the drop hit until they have fallen back; what moves under them meanwhile leaves them. Of more
     /// than 65 536 those of the smallest drops are left out.
     ///
     /// # Errors
@@ -108,7 +108,8 @@ impl SplashOptions {
             rng_draw([impact.id as u32, (impact.id >> 32) as u32], 0, 0, SPLASH_SIZE).map(rng_unit);
         let random = SIZES[0] + (SIZES[1] - SIZES[0]) * f64::from(chance);
         let radius = radius_m * self.size * random;
-        let position = impact.position + DVec3::Y * (radius * crown::middle(age_s / duration_s));
+        let position =
+            impact.position + impact.normal.as_dvec3() * (radius * crown::middle(age_s / duration_s));
         let range = view.range(2.0 * radius, MIN_PIXELS);
         let offset = position - view.eye;
         // The mask reaches beyond the largest radius, to the droplets of the rim.
@@ -120,6 +121,7 @@ impl SplashOptions {
             id: impact.id ^ SPLASH,
             kind: DropKind::Splash,
             present_s: [-age_s, duration_s - age_s].map(|time| time as f32),
+            normal: impact.normal.into(),
         })
     }
 }

@@ -88,12 +88,15 @@ pub(crate) fn number_or<R>(
     given.map_or_else(|| Ok(default.into()), |given| given.keyed(path, positions))
 }
 
+/// A number over time, if the file gives it.
+pub(crate) type Given = Option<Keyed<f64>>;
+
 /// The number over time, if it is given.
 pub(crate) fn number_given<R>(
     given: Option<&NumberKeys<R>>,
     path: &str,
     positions: &Positions<'_>,
-) -> Result<Option<Keyed<f64>>, SceneError> {
+) -> Result<Given, SceneError> {
     given.map(|given| given.keyed(path, positions)).transpose()
 }
 

@@ -12,7 +12,7 @@ use downpour_render::rain::profiles::{
 };
 use downpour_render::rain::project::{
     ProjectFrame, Projector, project_ahead, project_axis, project_class, project_grid, project_present,
-    project_row, project_seen,
+    project_row, project_seen, project_turn,
 };
 use downpour_render::rain::{
     DropMasks, Exposure, RainOptions, ScreenDrop, StreakPath, StreakSamples, TemporalResponse,
@@ -22,11 +22,10 @@ use downpour_shaders::render::rain::{
     PROFILES, PROFILES_CLEAR_KERNEL, PROFILES_FINISH_KERNEL, PROFILES_LEVELS, PROFILES_MEASURE_KERNEL,
     PROFILES_PLACE_KERNEL, PROJECT, PROJECT_KERNEL, PROJECT_NARROW, PROJECT_SMALL, PROJECT_THIN,
 };
-use downpour_shaders::sim::field::FIELD_SPLASH;
-use downpour_sim::field::EyeDrop;
+use downpour_sim::field::{EyeDrop, eye_drop_standing};
 use glam::Vec3;
 
-use crate::Domain::{Below, Made, OneOf, Or, Uniform};
+use crate::Domain::{Below, Made, OneOf, Or, Uniform, Unit3};
 use crate::compare::{Cpu, Gpu as FromGpu};
 use crate::function::Run;
 use crate::signature::WordKind;
@@ -65,6 +64,23 @@ fn sizes(random: [u32; 4]) -> Vec<u32> {
     let rows = 2 + random[0] % 128;
     let columns = [12, 16, 24][random[1] as usize % 3];
     vec![rows, columns, profiles_rows_of(rows), [1, 2, 4][random[2] as usize % 3]]
+}
+
+/// Normals of surfaces: some of level ground, some so short that their direction is that of none.
+fn normals(random: [u32; 4]) -> Vec<u32> {
+    let [a, b, c, _] = random.map(rng_unit);
+    let normal = match random[3] % 4 {
+        0 => Vec3::Y,
+        1 => Vec3::new(a - 0.5, b - 0.5, c - 0.5) * 1.0e-4,
+        _ => Vec3::new(a - 0.5, b, c - 0.5),
+    };
+    normal.to_array().map(f32::to_bits).to_vec()
+}
+
+/// Level vectors.
+fn rights(random: [u32; 4]) -> Vec<u32> {
+    let [a, b, ..] = random.map(rng_unit);
+    [a - 0.5, 0.0, b - 0.5].map(f32::to_bits).to_vec()
 }
 
 fn rows(random: [u32; 4]) -> Vec<u32> {
@@ -114,6 +130,14 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new("project_grid", &PROJECT, &[widths, Below(2)], exact, |a| {
             project_grid(a.f32(), a.u32() == 1).words()
         }),
+        FunctionCase::new(
+            "project_turn",
+            &PROJECT,
+            &[Made(normals), Made(rights), Unit3],
+            Tol::absolute(1.0e-6, "a quotient by a root (2.5 ulp each) of at most 1, where it is above 1e-3")
+                .with_outliers(1.0e-3),
+            |a| project_turn(Vec3::from(a.f32s()), Vec3::from(a.f32s()), Vec3::from(a.f32s())).words(),
+        ),
         FunctionCase::new("profiles_rows_of", &PROFILES, &[Made(rows)], exact, |a| {
             profiles_rows_of(a.u32()).words()
         }),
@@ -228,7 +252,12 @@ fn drops() -> Vec<EyeDrop> {
             diameter: 8.0 * drop.diameter,
             velocity: [0.0; 3],
             present: [0.04 * (0.05 - a), 0.04 * (0.95 - a + 0.1 * b)],
-            speed: FIELD_SPLASH,
+            // On level ground, and on slopes and walls.
+            speed: eye_drop_standing(if k % 20 == 3 {
+                Vec3::Y
+            } else {
+                Vec3::new(a - 0.5, b, 0.4 * a).normalize()
+            }),
             ..drop
         }
     };
