@@ -107,8 +107,26 @@ impl TailLaw {
             let edge_m = (f64::from(steps[index]) - 0.5) * self.cell_m;
             tails[index] = self.units(after_s, edge_m);
         }
-        tails
+        smooth(width, &fresh, &tails)
     }
+}
+
+/// Binomial mean of three by three cells, for all that have water among them: steps from the edge are whole cells.
+fn smooth(width: usize, fresh: &[usize], tails: &[u16]) -> Vec<u16> {
+    let mut sums = vec![0u32; tails.len()];
+    for &index in fresh.iter().filter(|&&index| tails[index] > 0) {
+        let column = index % width;
+        for (row, down) in [(-1, 1u32), (0, 2), (1, 1)] {
+            for (aside, across) in [(-1, 1u32), (0, 2), (1, 1)] {
+                let Some(to) = index.checked_add_signed(row * width as isize + aside) else { continue };
+                let is_beside = column.checked_add_signed(aside).is_some_and(|column| column < width);
+                if let Some(sum) = sums.get_mut(to).filter(|_| is_beside) {
+                    *sum += u32::from(tails[index]) * down * across;
+                }
+            }
+        }
+    }
+    sums.into_iter().map(|sum| (sum / 16) as u16).collect()
 }
 
 #[cfg(test)]
@@ -144,12 +162,13 @@ mod tests {
         let clocks: Vec<u32> = (0..width * height).map(clock).collect();
         let tails = law.tails(width, &clocks, now);
         let wide = |y: usize| tails[y * width..][..width].iter().filter(|&&tail| tail > 0).count();
-        assert_eq!((wide(height - 1), wide(height - 40)), (9, 0));
+        // Smoothing adds a cell on either side.
+        assert_eq!((wide(height - 1), wide(height - 40)), (11, 0));
         let widths: Vec<usize> = (0..height).map(wide).collect();
         assert!(widths.is_sorted(), "{widths:?}");
         // 2.7 mm at 2.57 cm/s: 105 ms, 17.5 rows.
         let rows = widths.iter().filter(|&&wide| wide > 0).count();
-        assert!((16..=19).contains(&rows), "{rows}");
+        assert!((17..=20).contains(&rows), "{rows}");
         let most = 0.6e-3 * law.slope * UNITS_PER_M + 1.0;
         for row in tails.chunks(width) {
             for pair in row.windows(2) {
