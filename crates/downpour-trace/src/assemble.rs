@@ -28,17 +28,41 @@ struct Stored<'a> {
     by_content: HashMap<(u64, bool), (&'a Arc<Picture>, TextureSlot)>,
 }
 
+/// Materials and textures of a scene: what no pose of it changes, and most of the work.
+#[derive(Clone, Debug)]
+pub struct SceneLooks {
+    /// They alone.
+    builder: SceneBuilder,
+    /// Index of each material of the scene, and of one for what has none.
+    materials: Vec<u32>,
+    fallback: u32,
+}
+
+impl SceneLooks {
+    /// Materials and textures of a scene.
+    #[must_use]
+    pub fn new(scene: &Scene) -> Self {
+        let (mut builder, mut stored) = (SceneBuilder::new(), Stored::default());
+        let materials =
+            scene.materials.iter().map(|m| builder.add_scene_material(scene, m, &mut stored)).collect();
+        let fallback = builder.add_material(MaterialLook::default());
+        Self { builder, materials, fallback }
+    }
+
+    /// Builder of scenes of these materials and textures.
+    #[must_use]
+    pub fn builder(&self) -> SceneBuilder {
+        self.builder.clone()
+    }
+}
+
 impl SceneBuilder {
-    /// Adds all that a pose of a scene shows, relative to `origin`, meters: far from the world's origin single precision
-    /// is coarse, near the eye it need not be.
+    /// Adds all that a pose of a scene shows to the builder of its looks, relative to `origin`, meters: far from the world's origin
+    /// single precision is coarse, near the eye it need not be.
     ///
     /// Lights keep their numbers: 1 is what the sky's radiance of 1 is, so that a lamp of `I` candela lights a surface
     /// at a distance `r` with `I / r^2` where radiance is in cd/m^2.
-    pub fn add_scene(&mut self, scene: &Scene, pose: &Pose, origin: DVec3) {
-        let mut stored = Stored::default();
-        let materials: Vec<u32> =
-            scene.materials.iter().map(|m| self.add_scene_material(scene, m, &mut stored)).collect();
-        let fallback = self.add_material(MaterialLook::default());
+    pub fn add_pose(&mut self, looks: &SceneLooks, scene: &Scene, pose: &Pose, origin: DVec3) {
         for instance in &pose.instances {
             let Some(mesh) = scene.meshes.get(instance.mesh) else { continue };
             let instance = relative(instance, pose, origin);
@@ -55,7 +79,7 @@ impl SceneBuilder {
                     uvs: [Some(bytemuck::cast_slice(first)), Some(bytemuck::cast_slice(second))],
                     colors: primitive.colors.as_deref().map(bytemuck::cast_slice),
                     indices: &primitive.indices,
-                    material: materials.get(primitive.material).copied().unwrap_or(fallback),
+                    material: looks.materials.get(primitive.material).copied().unwrap_or(looks.fallback),
                 };
                 self.add_mesh(&part, &Affine3A::IDENTITY);
             }

@@ -18,6 +18,7 @@ mod tests;
 use downpour_math::color::color_luminance;
 use downpour_math::in_range;
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use downpour_scene::scene::Pose;
 use downpour_sim::field::FallingDrop;
@@ -25,7 +26,7 @@ use downpour_sim::view::View;
 use downpour_weather::{self as weather, Loaded, Reloaded, Weather};
 use glam::DVec3;
 
-use crate::builder::SceneBuilder;
+use crate::assemble::SceneLooks;
 use crate::data::SceneData;
 use crate::glazing;
 use crate::wet::SceneWetness;
@@ -91,6 +92,8 @@ pub struct FrameScene {
     pub has_sun: bool,
     /// Number of meshes left out because their transform has no inverse or is out of range.
     pub left_out: usize,
+    /// Materials and textures of a scene that moves.
+    looks: Option<Arc<SceneLooks>>,
 }
 
 /// Sets light and water on surfaces to a time in seconds.
@@ -107,6 +110,23 @@ impl FrameScene {
     /// [`FrameSceneError::OverLimit`] above [`MAX_TRIANGLES`] or [`MAX_LIGHTS`], [`FrameSceneError::Memory`], or
     /// [`RenderError`]: a picture outside [`PIXELS`](downpour_render::camera::PIXELS), a time beyond [`LATEST_S`], or an invalid camera.
     pub fn new(weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, FrameSceneError> {
+        Self::with_looks(weather, loaded, time_s, None)
+    }
+
+    /// The same scene, which moves, at another time in seconds: its materials and textures are those of this one.
+    ///
+    /// # Errors
+    /// As [`FrameScene::new`].
+    pub fn moved(&self, weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, FrameSceneError> {
+        Self::with_looks(weather, loaded, time_s, self.looks.clone())
+    }
+
+    fn with_looks(
+        weather: &Weather,
+        loaded: &Loaded,
+        time_s: f64,
+        looks: Option<Arc<SceneLooks>>,
+    ) -> Result<Self, FrameSceneError> {
         check_size(weather.size)?;
         in_range("time", time_s, "s", &(-LATEST_S..=LATEST_S), 1.0, "-1e6 to 1e6")
             .map_err(RenderError::from)?;
@@ -115,8 +135,9 @@ impl FrameScene {
         let seen = CameraView::of(weather, loaded, &pose, time_s);
         let anchor = seen.as_ref().map_or_else(|| middle(loaded, &pose), |seen| seen.eye);
         let origin = origin_near(anchor);
-        let mut builder = SceneBuilder::new();
-        builder.add_scene(&loaded.scene, &pose, origin);
+        let looks = looks.unwrap_or_else(|| Arc::new(SceneLooks::new(&loaded.scene)));
+        let mut builder = looks.builder();
+        builder.add_pose(&looks, &loaded.scene, &pose, origin);
         if let Some(sun) = loaded.sun {
             builder.add_light(light::sun_light(&sun));
         }
@@ -153,6 +174,7 @@ impl FrameScene {
             lamps: pose.lights.len(),
             has_sun: loaded.sun.is_some(),
             left_out: pose.left_out,
+            looks: loaded.is_animated().then_some(looks),
         })
     }
 

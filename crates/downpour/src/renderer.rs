@@ -522,7 +522,7 @@ impl Renderer {
 /// The scene over time: still, before an eye that moves, or moving itself.
 fn scenery<'a>(first: &'a FrameScene, weather: &'a Weather, loaded: &'a Loaded) -> Box<dyn Scenery + 'a> {
     if loaded.is_animated() {
-        return Box::new(MovingScenery { weather, loaded });
+        return Box::new(MovingScenery { frame_scene: first, weather, loaded });
     }
     match &weather.camera.path {
         Some(path) if !path.is_still() => Box::new(MovingEye { frame_scene: first, weather, loaded }),

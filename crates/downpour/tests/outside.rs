@@ -37,7 +37,7 @@ fn drops(text: &str, time_s: f64) -> Result<Vec<FallingDrop>, Box<dyn Error>> {
     let weather = Weather::parse("w.toml", text)?;
     let loaded = load(&weather, &NoFiles, &mut Budget::default())?;
     let frame_scene = FrameScene::new(&weather, &loaded, time_s)?;
-    let scenery = MovingScenery { weather: &weather, loaded: &loaded };
+    let scenery = MovingScenery { frame_scene: &frame_scene, weather: &weather, loaded: &loaded };
     Ok(Shower::new(&weather)?.at(&scenery, &frame_scene, time_s, &mut |_, _| ())?.drops)
 }
 

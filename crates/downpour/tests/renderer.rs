@@ -239,7 +239,8 @@ fn stepped_rain_of_a_scene_is_that_of_the_time() {
         let (folder, path) = file(&text);
         floor(&folder);
         let source = Source::read(&path, &[], &mut Budget::default()).unwrap();
-        let scenery = MovingScenery { weather: &source.weather, loaded: &source.loaded };
+        let first = FrameScene::new(&source.weather, &source.loaded, 0.0).unwrap();
+        let scenery = MovingScenery { frame_scene: &first, weather: &source.weather, loaded: &source.loaded };
         is_that_of_the_time(name, |times| {
             let mut shower = Shower::new(&source.weather).unwrap();
             let mut at = |time_s: f64| {

@@ -49,7 +49,7 @@ pub(crate) struct RenderArguments {
     /// frames/%04d.png, or .mp4 (AV1, sRGB; even width and height).
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
-    /// Make a clip: frames A to B - 1. Frame k is taken at --time + k / fps seconds.
+    /// Make a clip: frames A to B - 1. Frame k is taken at --time + k / fps seconds; puddles and panes are rained on from frame 0 on.
     #[arg(long, value_name = "A..B", value_parser = frames::frames, allow_hyphen_values = true)]
     #[arg(requires = "fps")]
     frames: Option<Frames>,

@@ -71,6 +71,32 @@ fn a_clip_is_its_pictures() {
     assert_eq!((number("frame_count"), number("frames_made")), (3.0, 3.0));
 }
 
+/// A frame alone is that of the clip, with the water on a pane and in a flash of lightning, too.
+#[test]
+fn a_frame_alone_is_that_of_the_clip() {
+    let text = "[rain]\nrate_mm_h = 60\n[sky]\nzenith_color = [0.4, 0.45, 0.5]\n[camera]\nposition_m = [0, 1.6, 0]\n\
+                [lightning]\nper_minute = 600\nlimit = false\n\
+                [glass]\ntilt_deg = 60\nbefore_s = 0.5\ncell_mm = 5\nspeed_m_s = 9\n[output]\nsize = [32, 18]\n";
+    let made = |range: &str| {
+        let run = Downpour::new(&[
+            "render",
+            "w.toml",
+            "--backend",
+            "cpu",
+            "--fps",
+            "8",
+            "--frames",
+            range,
+            "-q",
+            "-o",
+            "%d.exr",
+        ]);
+        run.with_file("w.toml", text).run().succeeded()
+    };
+    let (clip, alone) = (made("0..4"), made("3..4"));
+    assert!(clip.file("3.exr") == alone.file("3.exr") && clip.file("2.exr") != alone.file("3.exr"));
+}
+
 #[test]
 fn a_clip_says_nothing_that_is_not_asked_for() {
     let folder = tempfile::tempdir().unwrap();

@@ -51,6 +51,8 @@ impl Scenery for Still<'_> {
 /// A scene that moves.
 #[derive(Clone, Copy, Debug)]
 pub struct MovingScenery<'a> {
+    /// The scene at any time.
+    pub frame_scene: &'a FrameScene,
     /// Its weather.
     pub weather: &'a Weather,
     /// Its files.
@@ -67,7 +69,7 @@ impl Scenery for MovingScenery<'_> {
     }
 
     fn frame_scene(&self, time_s: f64) -> Result<Cow<'_, FrameScene>, FrameSceneError> {
-        Ok(Cow::Owned(FrameScene::new(self.weather, self.loaded, time_s)?))
+        Ok(Cow::Owned(self.frame_scene.moved(self.weather, self.loaded, time_s)?))
     }
 }
 

@@ -26,7 +26,7 @@ const HOLLOW_VIEW: &str =
     "[camera]\nposition_m = [0.9, 0.9, -15.6]\nlook_at_m = [0.95, 0.02, -18.2]\nfov_deg = 40\n";
 
 /// All of them.
-pub(super) const EFFECTS: [Effect; 15] = [
+pub(super) const EFFECTS: [Effect; 17] = [
     Effect {
         name: "rain",
         title: "Drops, streaks and unresolved rain",
@@ -98,6 +98,17 @@ pub(super) const EFFECTS: [Effect; 15] = [
         on: "[splashes]\nenabled = true\n",
     },
     Effect {
+        name: "splatter",
+        title: "Splashes on cars",
+        base: "storm.toml",
+        time_s: "1.2",
+        without: &["camera"],
+        both: "[camera]\nposition_m = [0.9, 1.45, -7.6]\nlook_at_m = [1.7, 0.95, -9.2]\nfov_deg = 30\nshutter_s = 0.0167\n\
+               exposure_ev = -0.9\n",
+        off: "[splashes]\nenabled = false\n",
+        on: "[splashes]\nenabled = true\n",
+    },
+    Effect {
         name: "drips",
         title: "Drips off an awning",
         base: "storm.toml",
@@ -157,6 +168,17 @@ pub(super) const EFFECTS: [Effect; 15] = [
         off: "",
         on: "[glass]\ndistance_m = 0.34\ntilt_deg = 60\nsize_m = [0.5, 0.37]\ncell_mm = 0.85\nspeed_m_s = 8\nfocus = \"glass\"\naperture_mm = 6\n\
              before_s = 60.45\n",
+    },
+    Effect {
+        name: "rivulets",
+        title: "Rivulets on a window in heavy rain",
+        base: "window.toml",
+        time_s: "0.5",
+        without: &["glass"],
+        both: "[rain]\nrate_mm_h = 50\n\n[glass]\ndistance_m = 0.6992\nsize_m = [1.16, 0.72]\ncell_mm = 0.8\nspeed_m_s = 9\n\
+               before_s = 40\nfocus = \"glass\"\naperture_mm = 4\n",
+        off: "film_um = 0\n",
+        on: "film_um = 8\n",
     },
     Effect {
         name: "panes",

@@ -56,8 +56,8 @@ pub(super) fn run(
     if paths.video.is_some() {
         super::video::check_size(input.weather.size)?;
     }
-    let first_s = time_s(arguments.input.time, frames.first, fps);
-    let mut renderer = arguments.renderer(input, first_s, paths.stats.is_some())?;
+    // Water has its history from frame 0 on, whichever frames are asked for.
+    let mut renderer = arguments.renderer(input, arguments.input.time, paths.stats.is_some())?;
     let atlas = renderer.options().atlas.as_ref().map(atlas_digest);
     let scene = scene_digest(renderer.weather(), renderer.loaded(), renderer.first_scene());
     let weather = renderer.weather().clone();
