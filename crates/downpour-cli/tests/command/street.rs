@@ -33,7 +33,7 @@ fn a_car_is_a_model_that_drives() {
     let text = "[[model]]\nfile = \"car.glb\"\nanimation_speed = 8\ntranslation_m = [[0, [0, 0, 0]], [1, [0, 0, 8]]]\n";
     let check = Downpour::new(&["check", "w.toml", "--json"]).with_file("car.glb", car);
     let json = check.with_file("w.toml", text).run().succeeded().json();
-    assert_eq!((&json["lamps"], &json["animations_playing"][0]), (&2.into(), &"roll".into()), "{json}");
+    assert_eq!((&json["lights"], &json["animations_playing"][0]), (&2.into(), &"roll".into()), "{json}");
     Downpour::new(&["street", "--car", "6", "-o", "car.glb"])
         .run()
         .failed(2, &["paint: 6", "allowed: 0 to 5"]);
