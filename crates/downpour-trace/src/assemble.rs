@@ -54,6 +54,11 @@ impl SceneLooks {
     pub fn builder(&self) -> SceneBuilder {
         self.builder.clone()
     }
+
+    /// The builder of the only scene of them: without a copy of the textures.
+    pub(crate) fn take_builder(&mut self) -> SceneBuilder {
+        std::mem::take(&mut self.builder)
+    }
 }
 
 impl SceneBuilder {

@@ -135,8 +135,9 @@ impl FrameScene {
         let seen = CameraView::of(weather, loaded, &pose, time_s);
         let anchor = seen.as_ref().map_or_else(|| middle(loaded, &pose), |seen| seen.eye);
         let origin = origin_near(anchor);
-        let looks = looks.unwrap_or_else(|| Arc::new(SceneLooks::new(&loaded.scene)));
-        let mut builder = looks.builder();
+        let mut looks = looks.unwrap_or_else(|| Arc::new(SceneLooks::new(&loaded.scene)));
+        let is_kept = loaded.is_animated();
+        let mut builder = if is_kept { looks.builder() } else { Arc::make_mut(&mut looks).take_builder() };
         builder.add_pose(&looks, &loaded.scene, &pose, origin);
         if let Some(sun) = loaded.sun {
             builder.add_light(light::sun_light(&sun));
@@ -174,7 +175,7 @@ impl FrameScene {
             lamps: pose.lights.len(),
             has_sun: loaded.sun.is_some(),
             left_out: pose.left_out,
-            looks: loaded.is_animated().then_some(looks),
+            looks: is_kept.then_some(looks),
         })
     }
 

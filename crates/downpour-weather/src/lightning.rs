@@ -113,7 +113,7 @@ impl Lightning {
         Self { flashes, storm, is_limited, strokes }
     }
 
-    /// The same with another brightness of the flashes from a seed.
+    /// Sets the brightness of the flashes from a seed.
     pub(super) fn set_brightness(&mut self, brightness: f64) {
         if let Some(storm) = &mut self.storm {
             storm.brightness = brightness;

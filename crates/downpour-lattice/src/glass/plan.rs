@@ -201,7 +201,7 @@ fn frame(options: &GlassOptions, landing: &Landing, tick_s: f64) -> Result<Glass
 }
 
 /// Density, surface tension and viscosity of water at a temperature, SI.
-fn water_at(celsius: f64) -> Result<(f64, f64, f64), GlassError> {
+pub(super) fn water_at(celsius: f64) -> Result<(f64, f64, f64), GlassError> {
     Ok((water::density(celsius)?, water::surface_tension(celsius)?, water::viscosity(celsius)?))
 }
 

@@ -9,6 +9,11 @@ pub struct GlassState {
     pub motion: Vec<[u32; 2]>,
     /// Wetness where water has passed, 0 to 255.
     pub traversal: Vec<u8>,
-    /// Thickness of the water that tracks of running drops still hold, in units of 10 nm.
+    /// Thickness of the water that tracks of running drops still hold: [`GlassState::TAIL_UNITS_PER_M`].
     pub tails: Vec<u16>,
+}
+
+impl GlassState {
+    /// Units of [`GlassState::tails`] in a meter: a unit is 10 nm.
+    pub const TAIL_UNITS_PER_M: f64 = 1.0e8;
 }

@@ -9,14 +9,12 @@
 //! Tails are for pictures: their water is that of the drops, which keep it.
 
 use downpour_drop::air::STANDARD_GRAVITY;
-use downpour_drop::water;
 use downpour_math::ops::f64 as ops;
 
 use super::error::GlassError;
 use super::options::GlassOptions;
-
-/// Units of thickness in a meter: a unit is 10 nm.
-const UNITS_PER_M: f64 = 1.0e8;
+use super::plan::water_at;
+use super::state::GlassState;
 
 /// Length of the track above from which a tail drains, m: about the distance of drops that follow each other.
 const TRACK_M: f64 = 0.03;
@@ -40,11 +38,7 @@ pub(crate) struct TailLaw {
 impl TailLaw {
     /// Tails of the water of a pane, whose times are in units of 1 / `clock_hz` s.
     pub(crate) fn new(options: &GlassOptions, clock_hz: f64) -> Result<Self, GlassError> {
-        let (density, sigma, mu) = (
-            water::density(options.temperature_c)?,
-            water::surface_tension(options.temperature_c)?,
-            water::viscosity(options.temperature_c)?,
-        );
+        let (density, sigma, mu) = water_at(options.temperature_c)?;
         let along = (STANDARD_GRAVITY * ops::sin(options.tilt_rad)).max(0.1);
         let theta = options.contact.receding_rad;
         Ok(Self {
@@ -65,7 +59,7 @@ impl TailLaw {
     fn units(&self, after_s: f64, edge_m: f64) -> u16 {
         let edge = edge_m - self.retreat_m_s * after_s;
         let height = self.film_m(after_s).min(edge * self.slope).max(0.0);
-        (height * UNITS_PER_M).min(f64::from(u16::MAX)) as u16
+        (height * GlassState::TAIL_UNITS_PER_M).min(f64::from(u16::MAX)) as u16
     }
 
     /// Thickness of the tails in units of 10 nm, cell by cell: `clocks` are the times when water last moved over the cells, 0 for never,
@@ -86,15 +80,14 @@ impl TailLaw {
         for step in 1..MAX_EDGE {
             let around = |index: usize| {
                 let column = index % width;
-                let sides = [column > 0, column + 1 < width, index >= width, index + width < clocks.len()];
-                let near = |k: usize| match k {
-                    0 => index - 1,
-                    1 => index + 1,
-                    2 => index - width,
-                    _ => index + width,
-                };
+                let beside = [
+                    (column > 0).then(|| index - 1),
+                    (column + 1 < width).then(|| index + 1),
+                    index.checked_sub(width),
+                    Some(index + width).filter(|&below| below < clocks.len()),
+                ];
                 // Beyond the pane the track goes on.
-                (0..4).all(|k| !sides[k] || steps[near(k)] >= step)
+                beside.into_iter().flatten().all(|near| steps[near] >= step)
             };
             let next: Vec<usize> = inner.iter().copied().filter(|&index| around(index)).collect();
             for &index in &next {
@@ -169,7 +162,7 @@ mod tests {
         // 2.7 mm at 2.57 cm/s: 105 ms, 17.5 rows.
         let rows = widths.iter().filter(|&&wide| wide > 0).count();
         assert!((17..=20).contains(&rows), "{rows}");
-        let most = 0.6e-3 * law.slope * UNITS_PER_M + 1.0;
+        let most = 0.6e-3 * law.slope * GlassState::TAIL_UNITS_PER_M + 1.0;
         for row in tails.chunks(width) {
             for pair in row.windows(2) {
                 assert!(f64::from(pair[0].abs_diff(pair[1])) <= most, "{row:?}");

@@ -308,11 +308,11 @@ impl WetPane {
 }
 
 /// Largest height of the film and the tails of drops, m.
-const MAX_FILM_M: f32 = 655.35e-6;
+const MAX_FILM_M: f32 = (u16::MAX as f64 / GlassState::TAIL_UNITS_PER_M) as f32;
 
-/// Height of the film of a cell in units of 10 nm: that of its wetness, of `film_m` at most, and the tail of a drop.
+/// Height of the film of a cell in the units of tails: that of its wetness, of `film_m` at most, and the tail of a drop.
 fn film_units(film_m: f64, wet: u8, tail: u16) -> u32 {
-    let film = (film_m * 1.0e8 * f64::from(wet) / 255.0).round() as u32;
+    let film = (film_m * GlassState::TAIL_UNITS_PER_M * f64::from(wet) / 255.0).round() as u32;
     film.saturating_add(u32::from(tail)).min(65535)
 }
 

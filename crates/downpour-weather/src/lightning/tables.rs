@@ -7,9 +7,8 @@ use crate::quantity::{
     StrokeKey, Tint, TurnDeg,
 };
 use crate::sky::towards;
-use crate::wind::keys::{NumberKeys, number_given};
+use crate::wind::keys::{Given, NumberKeys, number_given};
 use downpour_scene::error::SceneError;
-use downpour_wind::Keyed;
 use serde::Deserialize;
 
 /// Default elevation of a flash, degrees.
@@ -173,7 +172,7 @@ fn check_rate(flashes: &[Flash], positions: &Positions<'_>) -> Result<(), SceneE
 
 impl LightningTable {
     /// Factor of the light of flashes from a seed over time, if it is given.
-    pub(crate) fn brightness(&self, positions: &Positions<'_>) -> Result<Option<Keyed<f64>>, SceneError> {
+    pub(crate) fn brightness(&self, positions: &Positions<'_>) -> Result<Given, SceneError> {
         number_given(self.brightness.as_ref(), "lightning.brightness", positions)
     }
 
