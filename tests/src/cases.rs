@@ -20,6 +20,7 @@ mod rain;
 mod render;
 mod scene;
 mod step;
+mod temporal;
 mod wet;
 mod wind;
 
@@ -48,6 +49,7 @@ pub fn functions() -> Vec<FunctionCase> {
         rain::spray::functions(),
         render::functions(),
         scene::functions(),
+        temporal::functions(),
         step::functions(),
         wet::functions(),
         wind::functions(),
@@ -79,6 +81,7 @@ pub fn kernels() -> Vec<KernelCase> {
         rain::spray::kernels(),
         render::kernels(),
         scene::kernels(),
+        temporal::kernels(),
         step::kernels(),
         wet::kernels(),
         wind::kernels(),

@@ -68,6 +68,12 @@ impl IntoWords for u32 {
     }
 }
 
+impl IntoWords for i32 {
+    fn append(&self, words: &mut Vec<u32>) {
+        words.push(self.cast_unsigned());
+    }
+}
+
 impl IntoWords for bool {
     fn append(&self, words: &mut Vec<u32>) {
         words.push(u32::from(*self));

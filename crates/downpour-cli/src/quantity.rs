@@ -2,6 +2,7 @@
 
 use std::ops::RangeInclusive;
 
+use downpour::ClipLight;
 use downpour::drop::air::PRESSURE_RANGE_PA;
 use downpour::drop::distribution::RATE_RANGE_MM_H;
 use downpour::drop::oscillation::Amplitudes;
@@ -198,6 +199,11 @@ pub(crate) fn ray_spacing(text: &str) -> Result<u32, String> {
     whole(text, 1..=MAX_RAY_SPACING)
 }
 
+/// Frames over which light is averaged.
+pub(crate) fn light_frames(text: &str) -> Result<u32, String> {
+    whole(text, 1..=ClipLight::MAX_FRAMES)
+}
+
 /// Seed of random numbers.
 pub(crate) fn seed(text: &str) -> Result<u64, String> {
     text.parse().map_err(|_| format!("allowed: a whole number from 0 to {}", u64::MAX))
@@ -314,6 +320,7 @@ mod tests {
     #[test]
     fn whole_numbers_are_whole() {
         assert_eq!((samples("1"), samples("8"), sky_rays("0")), (Ok(1), Ok(8), Ok(0)));
+        assert!(light_frames("8") == Ok(8) && light_frames("0").is_err() && light_frames("9").is_err());
         assert!(ray_spacing("4") == Ok(4) && ray_spacing("0").is_err() && ray_spacing("5").is_err());
         assert_eq!(seed("18446744073709551615"), Ok(u64::MAX));
         for text in ["0", "9", "-1", "2.0", "", "nan", "99999999999"] {

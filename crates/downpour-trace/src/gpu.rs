@@ -5,6 +5,7 @@ mod picture;
 mod plate;
 mod ripples;
 mod scene;
+mod temporal;
 
 pub use falling::{FieldDrops, FoundDrops, PictureDrops};
 pub use picture::{
@@ -17,3 +18,4 @@ pub use ripples::RipplesOnGpu;
 #[doc(hidden)]
 pub use scene::SampleDispatches;
 pub use scene::{SceneOnGpu, ScenePass, ScenePipeline};
+pub use temporal::{LightOnGpu, TemporalPass, TemporalPipeline};

@@ -10,6 +10,7 @@ use downpour_render::camera::Camera;
 use downpour_render::refine::{refine_shift, shifted};
 
 use crate::data::{RenderFrame, SceneData};
+use crate::temporal::LightWindow;
 use crate::wet::{WET_ROWS_THAT_CHANGE, wet_fraction};
 
 /// Dimension of the random numbers of the frames of a plate.
@@ -20,6 +21,17 @@ const MIN_WETTING: f32 = 1.0 / 128.0;
 
 /// Fluxes of rain that surfaces meet, for which wetness is compared.
 const FLUXES: [f32; 3] = [1.0, 0.2, 0.04];
+
+/// What of a plate stays for later pictures, and what earlier ones have left for it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PlateUse {
+    /// Frames of rays over which the plate of a scene that stands still is refined from picture to picture ([`KeptPlate`]); 0: each
+    /// picture has one of its own.
+    pub kept_frames: u32,
+    /// Frames of a clip over which the light of sky and surfaces is averaged ([`temporal`](crate::temporal)). A plate that is refined is
+    /// not averaged with others.
+    pub light: Option<LightWindow>,
+}
 
 /// A picture of a scene with what it shows; `T` holds its pixels.
 #[derive(Clone, Debug)]

@@ -2,7 +2,7 @@
 //!
 //! - [`builder`], [`data`]: a scene as the buffers that the shaders read; [`sky_light`] prepares the sky;
 //! - [`scene`], [`path`], [`scatter`], [`surface`], [`texture`], [`sky`], [`brdf`], `gpu`: what a ray of the camera sees, and the
-//!   light that comes there; [`skylight`] filters it;
+//!   light that comes there; [`skylight`] filters it over neighboring pixels, [`temporal`] over the frames of a clip;
 //! - [`capture`]: radiance from every direction around the eye, for the drops;
 //! - [`emitter`]: surfaces that shine, as lights;
 //! - [`wet`]: surfaces that rain has made wet; [`puddle`], [`wet_ground`]: water that stands on the ground; [`pane_shadow`]: the light through a wet pane;
@@ -70,6 +70,7 @@ mod surface;
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 pub mod surface;
+pub mod temporal;
 #[cfg(not(feature = "parity"))]
 mod texture;
 #[cfg(feature = "parity")]

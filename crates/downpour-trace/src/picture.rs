@@ -14,12 +14,15 @@ use downpour_render::rain::light::DropLightForm;
 use downpour_render::rain::{DropMasks, EnvironmentFrame, EnvironmentMap, Rain};
 use downpour_render::refine::refine_pixel;
 use downpour_sim::field::FallingDrop;
+use rayon::prelude::*;
 
 use crate::capture::trace_environment_rows;
 use crate::data::{RenderFrame, SceneData};
-use crate::kept::KeptPlate;
+use crate::kept::{KeptPlate, PlateUse};
 use crate::kept_environment::KeptEnvironment;
 use crate::scene::SceneView;
+use crate::temporal::{FrameLight, LightHistory, LightWindow, PixelLight, TemporalFrame};
+use crate::trace::add_light;
 
 /// The frame of a picture.
 ///
@@ -44,6 +47,8 @@ pub struct KeptScene {
     pub plate: Option<KeptPlate<Vec<[f32; 4]>>>,
     /// Environment map of the eye.
     pub environment: Option<KeptEnvironment<EnvironmentMap>>,
+    /// Light of the last frames of a clip.
+    pub light: LightHistory<PixelLight>,
 }
 
 /// Renders a picture on the CPU. The bits do not depend on the number of threads.
@@ -57,17 +62,35 @@ pub fn render_picture(
     masks: &DropMasks,
     options: &PictureOptions,
 ) -> Result<Picture, RenderError> {
-    render_picture_on(&mut KeptScene::default(), 1, scene, viewpoint, drops, masks, options)
+    render_picture_on(&mut KeptScene::default(), PlateUse::default(), scene, viewpoint, drops, masks, options)
 }
 
-/// The same over what the last picture has left, as far as it shows the same: [`KeptPlate`], [`KeptEnvironment`]. The plate is refined by a
-/// frame of rays for each picture, up to `max_frames`.
+/// Finds the light of sky and surfaces in a frame of a clip for the frames after it, without a picture.
+///
+/// # Errors
+/// As [`render_picture`].
+pub fn find_light(
+    kept: &mut KeptScene,
+    window: &LightWindow,
+    scene: &SceneData,
+    viewpoint: &Viewpoint,
+    options: &PictureOptions,
+) -> Result<(), RenderError> {
+    let frame = picture_frame(scene, viewpoint, options)?;
+    let (_, held) = SceneView { data: scene, frame: &frame }.picture_and_light();
+    let (time_s, origin, camera) = (window.time_s, window.origin, frame.camera);
+    kept.light.add(window, FrameLight { time_s, origin, camera, held });
+    Ok(())
+}
+
+/// The same over what the last pictures have left, as far as it shows the same: [`KeptPlate`], [`KeptEnvironment`], [`LightHistory`]. The
+/// plate is refined by a frame of rays for each picture, up to a number of frames.
 ///
 /// # Errors
 /// As [`render_picture`].
 pub fn render_picture_on(
     kept: &mut KeptScene,
-    max_frames: u32,
+    of: PlateUse,
     scene: &SceneData,
     viewpoint: &Viewpoint,
     drops: &[FallingDrop],
@@ -80,8 +103,14 @@ pub fn render_picture_on(
     let view = SceneView { data: scene, frame: &frame };
     let eye = viewpoint.eye.as_dvec3();
     let rain = timed(&mut passes, "binning", || Rain::new(&camera, eye, drops, masks, &options.rain));
-    let map = kept.environment.take().filter(|map| map.fits(scene, &frame, &rain.environment));
-    let map = kept.environment.insert(map.unwrap_or_else(|| {
+    // Pictures that keep none leave that of others alone.
+    let mut own = (None, None);
+    let (kept_map, kept_plate) = match of.kept_frames {
+        0 => (&mut own.0, &mut own.1),
+        _ => (&mut kept.environment, &mut kept.plate),
+    };
+    let map = kept_map.take().filter(|map| map.fits(scene, &frame, &rain.environment));
+    let map = kept_map.insert(map.unwrap_or_else(|| {
         let held = EnvironmentMap { texels: Vec::new() };
         KeptEnvironment::new(scene, &frame, &rain.environment, held)
     }));
@@ -89,10 +118,16 @@ pub fn render_picture_on(
     if !rows.is_empty() {
         timed(&mut passes, "capture", || trace_rows(&mut map.held, scene, &frame, &rain.environment, rows));
     }
-    let plate = kept.plate.take().filter(|plate| plate.shows(scene, &frame));
-    let plate = kept.plate.insert(plate.unwrap_or_else(|| KeptPlate::new(scene, &frame, Vec::new())));
-    if let Some((refined, count)) = plate.next(&frame, max_frames) {
-        let next = timed(&mut passes, "scene", || SceneView { data: scene, frame: &refined }.picture());
+    let plate = kept_plate.take().filter(|plate| plate.shows(scene, &frame));
+    let plate = kept_plate.insert(plate.unwrap_or_else(|| KeptPlate::new(scene, &frame, Vec::new())));
+    if let Some((refined, count)) = plate.next(&frame, of.kept_frames) {
+        let view = SceneView { data: scene, frame: &refined };
+        let (mut next, light) = timed(&mut passes, "scene", || view.picture_and_light());
+        if let Some(window) = of.light.filter(|_| of.kept_frames == 0) {
+            timed(&mut passes, "temporal filter", || {
+                average_light(&view, &mut next, &window, light, &mut kept.light);
+            });
+        }
         if count == 1 {
             plate.held = next;
         } else {
@@ -110,6 +145,28 @@ pub fn render_picture_on(
         picture.passes.push(("glow", start.elapsed().as_secs_f64() * 1.0e3));
     }
     Ok(picture)
+}
+
+/// Averages the light of a picture with that of the frames of a clip before it, and keeps its own for those after it.
+fn average_light(
+    view: &SceneView<'_>,
+    picture: &mut [[f32; 4]],
+    window: &LightWindow,
+    light: PixelLight,
+    history: &mut LightHistory<PixelLight>,
+) {
+    let before: Vec<_> = history.before(window).collect();
+    let count = before.len() as u32;
+    let before: Vec<_> = (0..)
+        .zip(before)
+        .map(|(turn, before)| (TemporalFrame::new(window, before, turn, count), &before.held))
+        .collect();
+    if count > 0 {
+        let change = view.temporal(&light, &before);
+        picture.par_iter_mut().zip(change).for_each(|(pixel, change)| add_light(pixel, change));
+    }
+    let (time_s, origin, camera) = (window.time_s, window.origin, view.frame.camera);
+    history.add(window, FrameLight { time_s, origin, camera, held: light });
 }
 
 /// Traces rows of an environment map, and makes its coarser levels of them and of those that are there.

@@ -34,16 +34,15 @@ pub fn skylight_hat(from: u32, to: u32) -> f32 {
 
 /// A slot of a pixel, unpacked.
 #[derive(Clone, Copy, Debug)]
-struct SkylightSlot {
+pub(crate) struct SkylightSlot {
     light: Vec3,
-    factor: Vec3,
     /// Of the surface.
     normal: Vec3,
     /// Of what counts as the same: the normal, or the direction that a mirror would show.
     direction: Vec3,
-    position: Vec3,
-    slack: f32,
-    roughness: f32,
+    pub(crate) position: Vec3,
+    pub(crate) slack: f32,
+    pub(crate) roughness: f32,
     /// Of its light.
     weight: f32,
 }
@@ -64,7 +63,7 @@ pub fn skylight_film(own: f32, other: f32) -> f32 {
 
 /// Weight of another pixel in the mean of a pixel: the degree to which both show one surface, 0 to 1. `wet`: of a scene that the rain
 /// has made wet.
-fn skylight_same(own: &SkylightSlot, other: &SkylightSlot, wet: bool) -> f32 {
+pub(crate) fn skylight_same(own: &SkylightSlot, other: &SkylightSlot, wet: bool) -> f32 {
     if other.slack <= 0.0 || (own.roughness > 0.0) != (other.roughness > 0.0) {
         return 0.0;
     }
@@ -111,13 +110,12 @@ struct Pixels<'a> {
 }
 
 impl SceneView<'_> {
-    /// Light that sky and surfaces add to each pixel.
-    pub(crate) fn skylight(&self, ambient: &[TraceAmbient]) -> Vec<[f32; 3]> {
+    /// Light of sky and surfaces in each pixel: means over its neighbors of what their rays have found, for its two slots, with the
+    /// variance of the means' luminance.
+    pub(crate) fn skylight(&self, ambient: &[TraceAmbient]) -> Vec<[Vec4; 2]> {
         let eye = self.frame.camera.eye;
-        let slots: Vec<[SkylightSlot; 2]> = ambient
-            .par_iter()
-            .map(|pixel| [&pixel.base, &pixel.mirror].map(|slot| skylight_slot(slot, eye)))
-            .collect();
+        let slots: Vec<[SkylightSlot; 2]> =
+            ambient.par_iter().map(|pixel| [0, 1].map(|slot| skylight_slot(pixel, slot, eye))).collect();
         let [width, height] = self.frame.camera.size();
         let pixels = &Pixels { frame: self.frame, slots: &slots, wet: self.frame.wetness > 0 };
         let all = |of: &(dyn Fn(u32, u32, usize) -> Vec4 + Sync)| -> Vec<[Vec4; 2]> {
@@ -130,16 +128,24 @@ impl SceneView<'_> {
         for pass in 0..SKYLIGHT_PASSES {
             means = all(&|x, y, k| pixels.skylight_wide(&means, x, y, k, SKYLIGHT_STEP << pass));
         }
-        let shown = |([base, mirror], [of_base, of_mirror]): (&[SkylightSlot; 2], &[Vec4; 2])| {
-            (base.factor * of_base.truncate() + mirror.factor * of_mirror.truncate()).to_array()
-        };
-        slots.par_iter().zip(&means).map(shown).collect()
+        means
     }
 }
 
+/// Light that the means of a pixel's two slots add to it, as an eye sees it.
+pub(crate) fn light_shown(pixel: &TraceAmbient, [of_base, of_mirror]: &[Vec4; 2], eye: Vec3) -> Vec3 {
+    let [base, mirror] = [&pixel.base, &pixel.mirror].map(|slot| trace_unpack(slot, eye).factor);
+    base * of_base.truncate() + mirror * of_mirror.truncate()
+}
+
+/// A slot of a pixel, unpacked.
+pub(crate) fn skylight_slot(pixel: &TraceAmbient, slot: usize, eye: Vec3) -> SkylightSlot {
+    skylight_unpack(if slot > 0 { &pixel.mirror } else { &pixel.base }, eye)
+}
+
 /// A slot, unpacked.
-fn skylight_slot(slot: &TraceSlot, eye: Vec3) -> SkylightSlot {
-    let PathSlot { light, slack, factor, roughness, normal: direction, guessed, position } =
+fn skylight_unpack(slot: &TraceSlot, eye: Vec3) -> SkylightSlot {
+    let PathSlot { light, slack, roughness, normal: direction, guessed, position, .. } =
         trace_unpack(slot, eye);
     let mut normal = direction;
     if roughness > 0.0 {
@@ -149,7 +155,7 @@ fn skylight_slot(slot: &TraceSlot, eye: Vec3) -> SkylightSlot {
         normal = sum / sum.dot(sum).sqrt().max(1.0e-20);
     }
     let weight = if guessed { SKYLIGHT_GUESSED } else { 1.0 };
-    SkylightSlot { light, factor, normal, direction, position, slack, roughness, weight }
+    SkylightSlot { light, normal, direction, position, slack, roughness, weight }
 }
 
 impl Pixels<'_> {

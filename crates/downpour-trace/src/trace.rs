@@ -18,6 +18,8 @@ use crate::capture::{capture_direction, capture_sky, capture_suns};
 use crate::data::RenderFrame;
 use crate::path::{PathSlot, ViewPath, path_lattice_words, path_max};
 use crate::scene::SceneView;
+use crate::skylight::light_shown;
+use crate::temporal::PixelLight;
 
 /// Light that is denoised over neighboring pixels, packed. The same layout as `TraceSlot` in WGSL.
 #[repr(C)]
@@ -257,6 +259,12 @@ impl SceneView<'_> {
     /// The whole picture, rows from the top, in parallel; the same bits for any number of threads.
     #[must_use]
     pub fn picture(&self) -> Vec<[f32; 4]> {
+        self.picture_and_light().0
+    }
+
+    /// The same, and the light of sky and surfaces in it.
+    #[must_use]
+    pub fn picture_and_light(&self) -> (Vec<[f32; 4]>, PixelLight) {
         let width = self.frame.camera.width;
         let (mut picture, ambient): (Vec<[f32; 4]>, Vec<TraceAmbient>) = (0..self.frame.camera.height)
             .into_par_iter()
@@ -267,13 +275,18 @@ impl SceneView<'_> {
                 })
             })
             .unzip();
-        let shown = self.skylight(&ambient);
-        for (pixel, shown) in picture.iter_mut().zip(shown) {
-            for k in 0..3 {
-                pixel[k] += shown[k];
-            }
-        }
-        picture
+        let means = self.skylight(&ambient);
+        let eye = self.frame.camera.eye;
+        let light = ambient.par_iter().zip(&means).map(|(pixel, means)| light_shown(pixel, means, eye));
+        picture.par_iter_mut().zip(light).for_each(|(pixel, light)| add_light(pixel, light));
+        (picture, PixelLight { ambient, means })
+    }
+}
+
+/// Adds light to a pixel with its distance.
+pub(crate) fn add_light(pixel: &mut [f32; 4], light: Vec3) {
+    for (k, light) in light.to_array().into_iter().enumerate() {
+        pixel[k] += light;
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use downpour::scene::Budget;
 use downpour::weather::{CameraPath, Roots, Weather, load};
-use downpour::{Renderer, RendererError, RendererOptions};
+use downpour::{ClipLight, Renderer, RendererError, RendererOptions};
 
 use crate::engine::{DeviceChoice, Request, open_device};
 
@@ -26,6 +26,8 @@ pub struct JobSettings {
     pub fps: f64,
     /// Samples along an edge of a pixel.
     pub samples: u32,
+    /// Frames of a clip over which the light of sky and surfaces is averaged.
+    pub light_frames: u32,
 }
 
 /// How far a job is.
@@ -139,9 +141,11 @@ fn run(
     }
     let roots: Vec<&Path> = request.asset_roots.iter().map(PathBuf::as_path).collect();
     let loaded = load(&weather, &Roots::open(&request.place, &roots)?, &mut Budget::default())?;
+    let light = ClipLight { frames: settings.light_frames, frames_per_s: settings.fps };
     let options = RendererOptions {
         samples: settings.samples,
         first_s: settings.time_s(0),
+        clip_light: settings.is_clip.then_some(light),
         ..RendererOptions::default()
     };
     let mut renderer = Renderer::new(weather, loaded, options, open_device(device)?)?;
@@ -167,6 +171,7 @@ mod tests {
             range_s: [1.0, 2.0],
             fps: 24.0,
             samples: 1,
+            light_frames: 4,
         };
         assert_eq!(settings.frames(), 25);
         assert_eq!(settings.time_s(24), 2.0);
@@ -192,7 +197,8 @@ mod tests {
             lists_drops: false,
         };
         let output = folder.path().join("a.png").display().to_string();
-        let settings = JobSettings { output, is_clip: false, range_s: [0.0; 2], fps: 24.0, samples: 1 };
+        let (is_clip, range_s, fps) = (false, [0.0; 2], 24.0);
+        let settings = JobSettings { output, is_clip, range_s, fps, samples: 1, light_frames: 1 };
         let device = DeviceChoice { backend: downpour::Backend::Cpu, adapter: None };
         let job = Job::start(&settings, request.clone(), device.clone()).unwrap();
         let result = loop {

@@ -67,8 +67,8 @@ pub mod shower;
 #[cfg(feature = "wgpu")]
 pub use rain::{ObstacleMesh, PlateTextures, Rain, RainError, RainSettings, RainView};
 pub use renderer::{
-    Backend, Computer, Device, DisplayFrame, Frame, PendingDisplay, PendingFrame, PixelDrop, Progress,
-    Renderer, RendererError, RendererOptions, Source, Truth,
+    Backend, ClipLight, Computer, Device, DisplayFrame, Frame, PendingDisplay, PendingFrame, PixelDrop,
+    Progress, Renderer, RendererError, RendererOptions, Source, Truth,
 };
 
 pub use downpour_atlas as atlas;

@@ -1,5 +1,6 @@
 //! A weather file in, frames out: one pipeline for a picture, a clip, a window and a program of your own.
 
+mod clip_light;
 mod computer;
 mod display;
 mod drops;
@@ -13,6 +14,7 @@ mod shower_of_model;
 mod source;
 mod truth;
 
+use std::borrow::Cow;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
@@ -30,11 +32,13 @@ use downpour_scene::scene::Scene;
 use downpour_trace::capture::trace_environment;
 use downpour_trace::data::RenderFrame;
 use downpour_trace::frame_scene::{FrameScene, LATEST_S};
+use downpour_trace::kept::PlateUse;
 use downpour_trace::pane_shadow::{is_lit_through, set_pane};
 use downpour_trace::scene::SceneView;
 use downpour_trace::wet_ground::WetGround;
 use downpour_weather::{CameraPath, Loaded, StreakLook, Weather};
 
+pub use clip_light::ClipLight;
 pub use computer::{Backend, Computer, Device};
 use computer::{Drawer, Painted, PaneView};
 pub use display::{DisplayFrame, PendingDisplay};
@@ -70,6 +74,9 @@ pub struct RendererOptions {
     /// frame; then it stays, and a frame costs its rain alone. 0: each frame has a picture of its own, and does not depend on those
     /// before it.
     pub kept_frames: u32,
+    /// Frames of a clip over which the light of sky and surfaces is averaged; `None`: each frame has its own. A plate that is kept has its
+    /// mean over frames without it.
+    pub clip_light: Option<ClipLight>,
 }
 
 impl Default for RendererOptions {
@@ -85,6 +92,7 @@ impl Default for RendererOptions {
             truth: false,
             first_s: 0.0,
             kept_frames: 0,
+            clip_light: None,
         }
     }
 }
@@ -169,6 +177,7 @@ impl Renderer {
         device: Device,
     ) -> Result<Self, RendererError> {
         check_size(weather.size)?;
+        options.clip_light.as_ref().map_or(Ok(()), ClipLight::check)?;
         let atlas = options.atlas.take();
         options.atlas = atlas_of(&weather, atlas.clone())?;
         let first = FrameScene::new(&weather, &loaded, options.first_s)?;
@@ -242,6 +251,7 @@ impl Renderer {
         }
         self.shower = Shower::new(&self.weather)?.with_drips_of(&self.shower);
         self.water = None;
+        self.drawer.forget_light();
         Ok(())
     }
 
@@ -297,12 +307,12 @@ impl Renderer {
         told: &mut dyn FnMut(Progress),
     ) -> Result<PendingFrame, RendererError> {
         let begin = Instant::now();
-        let mut frame_scene = match self.wet(time_s, told) {
+        let mut frame_scene = match self.seen(time_s, told) {
             Err(error) if self.drawn == 0 && self.drawer.falls_back(&error) => {
                 self.water = None;
-                self.wet(time_s, told)?
+                self.seen(time_s, told)?
             }
-            wet => wet?,
+            seen => seen?,
         };
         let mut drops = self.drops(&frame_scene, time_s, told)?;
         let measured = || self.shower.measured_rate_mm_h(&frame_scene, time_s);
@@ -310,19 +320,20 @@ impl Renderer {
         told(Progress { what: "drawing", parts: [0; 2] });
         // The first picture says whether the device can draw it, and how bright all are.
         let waits = self.drawn == 0 || self.exposure.is_none();
-        let kept_frames = self.options.kept_frames;
+        let of = self.plate_use(&frame_scene, time_s);
         let mut medium = self.shower.medium(&frame_scene, drops.resolved(), &self.masks, time_s)?;
         let mut options = self.picture_options(&frame_scene, time_s, medium)?;
-        let picture = match self.draw(&frame_scene, &drops, &options, kept_frames, waits) {
+        let picture = match self.draw(&frame_scene, &drops, &options, of, waits) {
             Err(error) if self.drawn == 0 && self.drawer.falls_back(&error) => {
-                if self.water.as_ref().is_some_and(Water::is_on_device) {
+                // What the device holds has to be found anew.
+                if self.water.as_ref().is_some_and(Water::is_on_device) || of.light.is_some() {
                     self.water = None;
-                    frame_scene = self.wet(time_s, told)?;
+                    frame_scene = self.seen(time_s, told)?;
                 }
                 drops = self.drops(&frame_scene, time_s, told)?;
                 medium = self.shower.medium(&frame_scene, drops.resolved(), &self.masks, time_s)?;
                 options = self.picture_options(&frame_scene, time_s, medium)?;
-                self.draw(&frame_scene, &drops, &options, kept_frames, waits)?
+                self.draw(&frame_scene, &drops, &options, of, waits)?
             }
             drawn => drawn?,
         };
@@ -374,14 +385,23 @@ impl Renderer {
         Ok(())
     }
 
+    /// The scene at a time with its water, when the light of the frames before it is there.
+    fn seen(&mut self, time_s: f64, told: &mut dyn FnMut(Progress)) -> Result<FrameScene, RendererError> {
+        self.find_light_before(time_s, told)?;
+        self.wet(time_s, told)
+    }
+
     /// The scene at a time. A copy costs little: what does not change is shared.
     fn frame_scene(&self, time_s: f64) -> Result<FrameScene, RendererError> {
         check_time(time_s)?;
         if time_s.to_bits() == self.options.first_s.to_bits() {
             return Ok(self.first.clone());
         }
-        let scenery = scenery(&self.first, &self.weather, &self.loaded);
-        Ok(scenery.frame_scene(time_s)?.into_owned())
+        Ok(match scenery(&self.first, &self.weather, &self.loaded).frame_scene(time_s)? {
+            Cow::Owned(frame_scene) => frame_scene,
+            // What stands still gets wet and dries all the same.
+            Cow::Borrowed(first) => first.seen_at(&self.weather, &self.loaded, time_s)?,
+        })
     }
 
     /// Water on ground and pane, not later than a time.
@@ -499,13 +519,13 @@ impl Renderer {
         self.options.refraction.unwrap_or_else(|| self.weather.rain.refraction.into())
     }
 
-    /// Draws a frame, seen through the pane if there is one, and waits for it if asked to. The plate is kept for so many frames of rays.
+    /// Draws a frame, seen through the pane if there is one, and waits for it if asked to.
     fn draw(
         &self,
         frame_scene: &FrameScene,
         drops: &Drops,
         options: &PictureOptions,
-        kept_frames: u32,
+        of: PlateUse,
         waits: bool,
     ) -> Result<Painted, RendererError> {
         let pane = self.water.as_ref().and_then(|water| water.pane.as_ref());
@@ -513,8 +533,7 @@ impl Renderer {
         // What is seen through a pane glows when that is known.
         let behind = PictureOptions { glow: Glow::default(), ..*options };
         let drawn = if through.is_some() { &behind } else { options };
-        let painted =
-            self.drawer.paint(kept_frames, frame_scene, drops, &self.masks, drawn, through.as_ref())?;
+        let painted = self.drawer.paint(of, frame_scene, drops, &self.masks, drawn, through.as_ref())?;
         if waits { painted.wait() } else { Ok(painted) }
     }
 }

@@ -207,6 +207,23 @@ fn frames_do_not_depend_on_those_before() {
     }
 }
 
+/// Surfaces that stand still before a still eye get wet as the rain goes on: a later frame of a clip is the frame of its time alone.
+#[test]
+fn surfaces_get_wetter_in_a_clip() {
+    let text = OPEN
+        .replace("[0, 1.6, 0]", "[0, 1.6, 0]\npitch_deg = -20")
+        .replace("[sky]", "[wetness]\nrained_mm = 0\n[sky]");
+    let (folder, path) = file(&format!("{text}[[model]]\nfile = 'floor.gltf'\n"));
+    floor(&folder);
+    let clean = |times: &[f64]| {
+        let mut renderer = Renderer::open(&path, Backend::Cpu).unwrap();
+        let at = |&time| renderer.frame(time).unwrap().picture.clean[48 * 31 + 24];
+        times.iter().map(at).last().unwrap()
+    };
+    let [dry, wet] = [0.0, 600.0].map(|time| clean(&[time]));
+    assert!(dry != wet && clean(&[0.0, 600.0]) == wet);
+}
+
 /// Rain that goes step by step shows at a time the same drops whatever the frame rate, the frames before it, and the first frame: its
 /// steps count from time 0, and what it holds is asked of the camera at time 0.
 #[test]

@@ -1,5 +1,5 @@
-//! `wgsl/render/{data,texture,sky,surface,scene,capture,trace,skylight}.wgsl`: a scene of triangles under a sky, traced by rays. Twins:
-//! `downpour_trace::{texture, sky, surface, scene, capture, trace, skylight}`. The rays of the camera are in
+//! `wgsl/render/{data,texture,sky,surface,scene,capture,trace,skylight,temporal}.wgsl`: a scene of triangles under a sky, traced by rays. Twins:
+//! `downpour_trace::{texture, sky, surface, scene, capture, trace, skylight, temporal}`. The rays of the camera are in
 //! [`path`](super::path).
 
 use super::brdf::BRDF;
@@ -28,10 +28,12 @@ pub const MODULES: &[&Module] = &[
     &SPACING,
     &TRACE,
     &SKYLIGHT,
+    &TEMPORAL,
 ];
 
 /// Every kernel of this file.
-pub const KERNELS: &[&Kernel] = &[&TRACE_KERNEL, &TRACE_SAMPLE_KERNEL, &TRACE_SEEN_KERNEL, &SKYLIGHT_KERNEL];
+pub const KERNELS: &[&Kernel] =
+    &[&TRACE_KERNEL, &TRACE_SAMPLE_KERNEL, &TRACE_SEEN_KERNEL, &SKYLIGHT_KERNEL, &TEMPORAL_KERNEL];
 
 shared_constants! {
     /// Numbers of the scene's tables and rays.
@@ -265,3 +267,14 @@ pub static SKYLIGHT: Module = Module {
 /// One invocation per pixel.
 pub static SKYLIGHT_KERNEL: Kernel =
     Kernel { entry: "main_skylight", module: &SKYLIGHT, workgroup: [8, 8, 1] };
+
+/// That light over the frames of a clip. Twin: `downpour_trace::temporal`.
+pub static TEMPORAL: Module = Module {
+    path: "render/temporal.wgsl",
+    wgsl: include_str!("../../wgsl/render/temporal.wgsl"),
+    uses: &[&SKYLIGHT, &TRACE, &CAMERA],
+};
+
+/// One invocation per pixel.
+pub static TEMPORAL_KERNEL: Kernel =
+    Kernel { entry: "main_temporal", module: &TEMPORAL, workgroup: [8, 8, 1] };

@@ -34,12 +34,8 @@ fn skylight_hat(from_pixel: u32, to_pixel: u32) -> f32 {
     return f32(SKYLIGHT_RADIUS + 1u - (max(from_pixel, to_pixel) - min(from_pixel, to_pixel)));
 }
 
-// A slot of a pixel, unpacked.
-fn skylight_slot(pixel: u32, slot: u32) -> SkylightSlot {
-    var packed = skylight_ambient[pixel].base;
-    if slot > 0u {
-        packed = skylight_ambient[pixel].mirror;
-    }
+// A slot, unpacked.
+fn skylight_unpack(packed: TraceSlot) -> SkylightSlot {
     let found = trace_unpack(packed);
     let weight = select(1.0, SKYLIGHT_GUESSED, found.guessed > 0u);
     var normal = found.normal;
@@ -50,6 +46,14 @@ fn skylight_slot(pixel: u32, slot: u32) -> SkylightSlot {
         normal = sum / max(sqrt(dot(sum, sum)), 1.0e-20);
     }
     return SkylightSlot(found.light, found.slack, normal, found.roughness, found.normal, weight, found.position);
+}
+
+// A slot of a pixel, unpacked.
+fn skylight_slot(pixel: u32, slot: u32) -> SkylightSlot {
+    if slot > 0u {
+        return skylight_unpack(skylight_ambient[pixel].mirror);
+    }
+    return skylight_unpack(skylight_ambient[pixel].base);
 }
 
 // Agreement of the roughness of two glosses, 0 to 1: a film and the dry surface beside it mirror different things.

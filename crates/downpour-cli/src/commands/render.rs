@@ -18,7 +18,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use downpour::render::rain::RefractionForm;
 use downpour::scene::Budget;
-use downpour::{Frame, PendingFrame, Renderer, RendererOptions};
+use downpour::{ClipLight, Frame, PendingFrame, Renderer, RendererOptions};
 
 use super::input::{Input, InputArguments, say_missing};
 use super::streaks::StreaksArgument;
@@ -33,6 +33,9 @@ use outputs::{Bytes, Format, Outputs};
 /// Memory per pixel, in bytes, while a picture is made and written: the scene, the sky's light at its pixels
 /// (twice while threads merge their parts), the rain, the pane with the scene behind it, and the file.
 pub(super) const BYTES_PER_PIXEL: u64 = 300;
+
+/// Memory per pixel, in bytes, of the light of a frame before that is averaged.
+const LIGHT_BYTES_PER_PIXEL: u64 = 96;
 
 /// Make a picture of a scene in the rain, or a clip.
 #[derive(Debug, Args)]
@@ -82,6 +85,10 @@ pub(crate) struct RenderArguments {
     #[arg(long, value_name = "N", default_value = "1", value_parser = quantity::ray_spacing)]
     #[arg(allow_hyphen_values = true)]
     ray_spacing: u32,
+    /// Frames of a clip over which the light of sky and surfaces is averaged, where they show the same surface, 1 to 8, so that its noise
+    /// flickers less: 4 halve it. Those before the first frame that is asked for are found, too.
+    #[arg(long, value_name = "N", default_value = "1", value_parser = quantity::light_frames, allow_hyphen_values = true)]
+    light_frames: u32,
     #[command(flatten)]
     streaks: StreaksArgument,
     /// Lookup of the color of a drop's pixel [default: the weather's].
@@ -124,6 +131,10 @@ impl RenderArguments {
     pub(crate) fn run(&self, interrupt: &Interrupt) -> Result<(), Failure> {
         self.input.check()?;
         self.backend.check()?;
+        if self.light_frames > 1 && self.frames.is_none() {
+            let found = format!("--light-frames {} without --frames", self.light_frames);
+            return Err(Failure::new(INPUT, format!("{found}; allowed: with --frames and --fps, or 1")));
+        }
         match (self.frames, self.fps) {
             (Some(frames), Some(fps)) => clip::run(self, frames, fps, interrupt),
             _ if self.watch => watch::run(self, interrupt),
@@ -163,7 +174,8 @@ impl RenderArguments {
     /// Renderer of the frames of a weather, from a time on.
     fn renderer(&self, input: Input, first_s: f64, measure: bool) -> Result<Renderer, Failure> {
         let Input { weather, loaded, .. } = input;
-        reserve(weather.size)?;
+        reserve(weather.size, self.light_frames)?;
+        let clip_light = self.fps.map(|frames_per_s| ClipLight { frames: self.light_frames, frames_per_s });
         let options = RendererOptions {
             kept_frames: 0,
             samples: self.samples,
@@ -174,6 +186,7 @@ impl RenderArguments {
             measure,
             truth: self.layers,
             first_s,
+            clip_light,
         };
         let device = self.backend.device(|text| self.say(text))?;
         let renderer =
@@ -245,11 +258,12 @@ impl RenderArguments {
 }
 
 /// Checks that the memory for a picture is available. An allocation that fails later on would abort the process.
-fn reserve([width, height]: [u32; 2]) -> Result<(), Failure> {
-    if has_room([width, height], 1) {
+fn reserve([width, height]: [u32; 2], light_frames: u32) -> Result<(), Failure> {
+    let light = (u64::from(light_frames - 1) * LIGHT_BYTES_PER_PIXEL).div_ceil(BYTES_PER_PIXEL);
+    if has_room([width, height], 1 + light) {
         return Ok(());
     }
-    let needed = memory([width, height], 1) >> 20;
+    let needed = memory([width, height], 1 + light) >> 20;
     let found = format!("{width} x {height} pixels: {needed} MiB of memory are needed");
     Err(Failure::new(
         LIMIT,

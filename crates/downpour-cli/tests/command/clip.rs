@@ -97,6 +97,19 @@ fn a_frame_alone_is_that_of_the_clip() {
     assert!(clip.file("3.exr") == alone.file("3.exr") && clip.file("2.exr") != alone.file("3.exr"));
 }
 
+/// So it is if its light is averaged with that of the frames before it, which are found first.
+#[test]
+fn a_frame_alone_has_the_light_of_the_frames_before() {
+    let made = |range: &str, frames: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let arguments = ["--frames", range, "--light-frames", frames, "-q", "-o", "@%d.exr"];
+        clip(folder.path(), &arguments).run().succeeded();
+        read(folder.path(), "3.exr")
+    };
+    let whole = made("0..4", "3");
+    assert!(made("3..4", "3") == whole && made("3..4", "1") != whole);
+}
+
 #[test]
 fn a_clip_says_nothing_that_is_not_asked_for() {
     let folder = tempfile::tempdir().unwrap();

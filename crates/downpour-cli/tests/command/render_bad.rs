@@ -44,6 +44,8 @@ fn bad_arguments_are_refused() {
         (&["-o", "a.png", "--size", "99999999999x1"], 3, &["1 to 16384"]),
         (&["-o", "a.png", "--seed", "-1"], 2, &["--seed", "0 to 18446744073709551615"]),
         (&["-o", "a.png", "--seed", "18446744073709551616"], 2, &["--seed", "0 to 18446744073709551615"]),
+        (&["-o", "a.png", "--light-frames", "9"], 2, &["--light-frames", "1 to 8"]),
+        (&["-o", "a.png", "--light-frames", "4"], 2, &["--light-frames 4 without --frames", "allowed"]),
         (&["-o", "a.png", "--sky-rays", "65"], 2, &["--sky-rays", "0 to 64"]),
         (&["-o", "a.png", "--layers"], 2, &["--layers", "allowed: for .exr only"]),
         (&["-o", "a.png", "--adapter", "x"], 2, &["--adapter", "--backend gpu or auto"]),

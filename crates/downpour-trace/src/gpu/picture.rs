@@ -26,12 +26,14 @@ use downpour_render::rain::{DropMasks, Rain};
 use downpour_render::tone::Tone;
 
 use super::falling::{FallingPass, FoundDrops, FoundReadback, PictureDrops};
-use super::scene::{SceneOnGpu, ScenePipeline};
+use super::scene::{SceneOnGpu, ScenePass, ScenePipeline};
+use super::temporal::{LightOnGpu, TemporalPipeline};
 use crate::data::{RenderFrame, SceneData};
-use crate::kept::{KeptPlate, seedless};
+use crate::kept::{KeptPlate, PlateUse, seedless};
 use crate::kept_environment::KeptEnvironment;
 use crate::picture::picture_frame;
 use crate::scene::SceneView;
+use crate::temporal::{FrameLight, LightHistory, LightWindow, TemporalFrame};
 
 /// Error of a picture on a GPU.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -68,8 +70,20 @@ impl From<GpuSimError> for GpuPictureError {
 }
 
 /// Labels of the buffers that a picture keeps.
-const GIVEN_AWAY: [&str; 7] =
-    ["picture", "rain", "environment map", "distances of drops", "glow", "display picture", TICKS];
+const GIVEN_AWAY: [&str; 9] = [
+    "picture",
+    "rain",
+    "environment map",
+    "distances of drops",
+    "glow",
+    "display picture",
+    TICKS,
+    FRAME_LIGHT[0],
+    FRAME_LIGHT[1],
+];
+
+/// Labels of the buffers with the light of a frame of a clip.
+const FRAME_LIGHT: [&str; 2] = ["light of a frame", "means of light of a frame"];
 
 /// Room for passes that are timed by the device.
 const MAX_PASSES: u32 = 32;
@@ -82,6 +96,7 @@ pub struct PictureRenderer {
     rain: RainPipeline,
     glow: GlowPipeline,
     refine: RefinePipeline,
+    temporal: TemporalPipeline,
     tone: TonePipeline,
     fields: FieldPipeline,
     pool: Arc<BufferPool>,
@@ -101,14 +116,15 @@ pub struct PictureRenderer {
     environment: Arc<Mutex<Option<KeptEnvironment<wgpu::Buffer>>>>,
     /// The light of the rain of the last picture, with its frame without a seed, if it was to be kept.
     light: Arc<Mutex<Option<(RenderFrame, KeptLight)>>>,
+    /// Light of sky and surfaces in the last frames of a clip.
+    history: Arc<Mutex<LightHistory<LightOnGpu>>>,
 }
 
 /// Use of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PictureUse {
-    /// Frames of rays over which the plate of a scene that stands still is refined from picture to picture ([`KeptPlate`]); 0: each
-    /// picture has one of its own.
-    pub kept_frames: u32,
+    /// What of its plate stays for later pictures.
+    pub plate: PlateUse,
     /// Way to the pixels of a picture that is only displayed: [`PictureOnGpu::begin_display`].
     pub tone: Option<Tone>,
 }
@@ -125,6 +141,7 @@ impl PictureRenderer {
             rain: RainPipeline::new(gpu)?,
             glow: GlowPipeline::new(gpu)?,
             refine: RefinePipeline::new(gpu)?,
+            temporal: TemporalPipeline::new(gpu)?,
             tone: TonePipeline::new(gpu)?,
             fields: FieldPipeline::new(gpu)?,
             // A picture may be read after the next one is begun.
@@ -138,6 +155,7 @@ impl PictureRenderer {
             plate: Arc::default(),
             environment: Arc::default(),
             light: Arc::default(),
+            history: Arc::default(),
         })
     }
 
@@ -207,19 +225,7 @@ impl PictureRenderer {
         pool.begin_frame();
         let mut passes = FramePasses::after(&self.queries, pool, MAX_PASSES)?;
         let made_before = pool.made();
-        let uploaded = passes.host("upload", || {
-            let mut last = self.uploaded.lock().unwrap_or_else(PoisonError::into_inner);
-            // What the scene shares with that of the last picture is on the device, and so are its masks. After an error nothing is.
-            let (scene, masks) = match last.take() {
-                Some((before, of_masks)) => {
-                    (before.renewed(pool, scene)?, self.rain.upload_after(masks, Some(&of_masks))?)
-                }
-                None => (SceneOnGpu::new(pool, scene)?, self.rain.upload_after(masks, None)?),
-            };
-            *last = Some((scene.clone(), masks.clone()));
-            drop(last);
-            Ok::<_, GpuError>((scene, masks))
-        })?;
+        let uploaded = passes.host("upload", || self.upload(scene, masks))?;
         if let Some(ripples) = uploaded.0.ripples(pool)? {
             passes.run("ripples", &ripples.dispatches())?;
         }
@@ -230,15 +236,15 @@ impl PictureRenderer {
         let rain = Rain::new(&camera, eye, &[], masks, &options.rain);
         let mut kept = self.plate.lock().unwrap_or_else(PoisonError::into_inner);
         // After an error there is none. Pictures that keep none leave that of others alone.
-        let last = if of.kept_frames > 0 { kept.take() } else { None };
+        let last = if of.plate.kept_frames > 0 { kept.take() } else { None };
         let known = last.filter(|plate| plate.shows(scene, &frame));
-        let mut stays = match (of.kept_frames, known) {
+        let mut stays = match (of.plate.kept_frames, known) {
             (0, _) => None,
             (_, Some(known)) => Some(known),
             (_, None) => Some(KeptPlate::new(scene, &frame, self.mean_of_pictures(&camera)?)),
         };
         let next = match stays.as_mut() {
-            Some(plate) => plate.next(&frame, of.kept_frames),
+            Some(plate) => plate.next(&frame, of.plate.kept_frames),
             None => Some((frame, 1)),
         };
         // What stands still is worth the rays of all pixels.
@@ -247,17 +253,19 @@ impl PictureRenderer {
         let mut layers: Vec<(&'static str, wgpu::Buffer)> = Vec::new();
         let mut clean = stays.as_ref().map(|plate| plate.held.clone());
         let mut around = self.environment.lock().unwrap_or_else(PoisonError::into_inner);
-        let environment = self.environment_map(of, scene, &frame, &rain, &mut around)?;
-        if of.kept_frames == 0 {
+        let environment = self.environment_map(of.plate, scene, &frame, &rain, &mut around)?;
+        if of.plate.kept_frames == 0 {
             layers.push(("environment map", environment.0.clone()));
         }
-        let around_kept = if of.kept_frames > 0 { around.take() } else { None };
+        let around_kept = if of.plate.kept_frames > 0 { around.take() } else { None };
         let plate = self.scene.plate_around(pool, &uploaded.0, &frame, &rain, environment)?;
         let captured = plate.finest();
         let stands_still = next.is_none() && captured.is_empty();
         let mut is_captured = false;
         if let Some((frame, count)) = next {
-            let traced = self.scene.prepare_paced(pool, &uploaded.0, &frame, pace)?;
+            let window = of.plate.light.filter(|_| of.plate.kept_frames == 0);
+            let labels = if window.is_some() { FRAME_LIGHT } else { ["light of the sky", "means of light"] };
+            let traced = self.scene.prepare_paced(pool, &uploaded.0, &frame, pace, labels)?;
             let mut batches: Vec<Vec<_>> = traced.rays().into_iter().map(|band| vec![band]).collect();
             // Few texels with long ways keep a large device idle: it traces the picture meanwhile.
             is_captured = self.scene.takes_samples_together();
@@ -266,6 +274,9 @@ impl PictureRenderer {
             }
             passes.run_batches("scene", &batches)?;
             passes.run_each("skylight", &traced.filters())?;
+            if let Some(window) = &window {
+                self.average_light(&mut passes, window, &frame, &traced)?;
+            }
             if let Some(mean) = &clean {
                 let more = self.refine.prepare(pool, camera.size(), count, traced.picture(), mean)?;
                 passes.run("refine", &[more.dispatch()])?;
@@ -382,10 +393,105 @@ impl PictureRenderer {
         })
     }
 
+    /// Finds the light of sky and surfaces in a frame of a clip for the frames after it, without a picture.
+    ///
+    /// # Errors
+    /// As [`PictureRenderer::render`].
+    pub fn find_light(
+        &self,
+        window: &LightWindow,
+        scene: &SceneData,
+        viewpoint: &Viewpoint,
+        masks: &DropMasks,
+        options: &PictureOptions,
+    ) -> Result<(), GpuPictureError> {
+        let frame = picture_frame(scene, viewpoint, options)?;
+        if self.gpu.adapter().is_software() {
+            check_turns(&frame)?;
+        }
+        let _drawing = self.drawing.lock().unwrap_or_else(PoisonError::into_inner);
+        let pool = &*self.pool;
+        pool.begin_frame();
+        let mut passes = FramePasses::new(&self.gpu, 1)?;
+        let (scene, _) = self.upload(scene, masks)?;
+        if let Some(ripples) = scene.ripples(pool)? {
+            passes.run("ripples", &ripples.dispatches())?;
+        }
+        let pace = *self.pace.lock().unwrap_or_else(PoisonError::into_inner);
+        let traced = self.scene.prepare_paced(pool, &scene, &frame, pace, FRAME_LIGHT)?;
+        passes.run_each("scene", &traced.dispatches())?;
+        pool.give_back("picture", traced.picture().clone());
+        self.keep_light(window, &frame, traced.light());
+        Ok(())
+    }
+
+    /// Averages the light of a picture with that of the frames of a clip before it, and keeps its own for those after it.
+    fn average_light(
+        &self,
+        passes: &mut FramePasses,
+        window: &LightWindow,
+        frame: &RenderFrame,
+        traced: &ScenePass<'_>,
+    ) -> Result<(), GpuError> {
+        let history = self.history.lock().unwrap_or_else(PoisonError::into_inner);
+        let before: Vec<_> = history.before(window).collect();
+        let count = before.len() as u32;
+        let before: Vec<_> = (0..)
+            .zip(before)
+            .map(|(turn, before)| (TemporalFrame::new(window, before, turn, count), &before.held))
+            .collect();
+        if count > 0 {
+            let (light, picture) = (traced.light(), traced.picture());
+            let pass = self.temporal.prepare(&*self.pool, frame, light, &before, picture)?;
+            passes.run_each("temporal filter", &pass.dispatches())?;
+        }
+        drop(history);
+        self.keep_light(window, frame, traced.light());
+        Ok(())
+    }
+
+    /// Keeps the light of a frame of a clip for those after it.
+    fn keep_light(&self, window: &LightWindow, frame: &RenderFrame, light: &LightOnGpu) {
+        let (time_s, origin, camera) = (window.time_s, window.origin, frame.camera);
+        let mut history = self.history.lock().unwrap_or_else(PoisonError::into_inner);
+        for out in history.add(window, FrameLight { time_s, origin, camera, held: light.clone() }) {
+            for (label, buffer) in FRAME_LIGHT.into_iter().zip([out.held.ambient, out.held.means]) {
+                self.pool.give_back(label, buffer);
+            }
+        }
+    }
+
+    /// True if the light of a frame of a clip is kept.
+    #[must_use]
+    pub fn has_light(&self, time_s: f64) -> bool {
+        self.history.lock().unwrap_or_else(PoisonError::into_inner).has(time_s)
+    }
+
+    /// Forgets the light of all frames.
+    pub fn forget_light(&self) {
+        *self.history.lock().unwrap_or_else(PoisonError::into_inner) = LightHistory::default();
+    }
+
+    /// Brings a scene and masks to the device: what the scene shares with that of the last picture is there, and so are the masks. After an
+    /// error nothing is.
+    fn upload(&self, scene: &SceneData, masks: &DropMasks) -> Result<(SceneOnGpu, RainOnGpu), GpuError> {
+        let pool = &*self.pool;
+        let mut last = self.uploaded.lock().unwrap_or_else(PoisonError::into_inner);
+        let (scene, masks) = match last.take() {
+            Some((before, of_masks)) => {
+                (before.renewed(pool, scene)?, self.rain.upload_after(masks, Some(&of_masks))?)
+            }
+            None => (SceneOnGpu::new(pool, scene)?, self.rain.upload_after(masks, None)?),
+        };
+        *last = Some((scene.clone(), masks.clone()));
+        drop(last);
+        Ok((scene, masks))
+    }
+
     /// The environment map of a frame, and the rows of it that are to be traced: in `kept`, if it stays from picture to picture.
     fn environment_map(
         &self,
-        of: PictureUse,
+        of: PlateUse,
         scene: &SceneData,
         frame: &RenderFrame,
         rain: &Rain,

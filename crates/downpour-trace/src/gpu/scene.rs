@@ -13,6 +13,7 @@ use downpour_render::camera::Camera;
 use downpour_render::gpu::LightingOnGpu;
 
 use super::ripples::RipplesOnGpu;
+use super::temporal::LightOnGpu;
 use crate::data::{RenderFrame, SceneData};
 use crate::trace::TraceAmbient;
 
@@ -139,22 +140,23 @@ impl ScenePipeline {
         scene: &SceneOnGpu,
         frame: &RenderFrame,
     ) -> Result<ScenePass<'_>, GpuError> {
-        self.prepare_paced(buffers, scene, frame, None)
+        self.prepare_paced(buffers, scene, frame, None, ["light of the sky", "means of light"])
     }
 
-    /// The same on a device that took so long for a sample of a like frame, ms.
+    /// The same on a device that took so long for a sample of a like frame, ms, with the light in buffers of these labels.
     pub(super) fn prepare_paced(
         &self,
         buffers: &impl BufferSource,
         scene: &SceneOnGpu,
         frame: &RenderFrame,
         sample_ms: Option<f64>,
+        [of_light, of_means]: [&'static str; 2],
     ) -> Result<ScenePass<'_>, GpuError> {
         let pixels = u64::from(frame.camera.width) * u64::from(frame.camera.height);
         let storage = wgpu::BufferUsages::STORAGE;
         let picture = buffers.buffer("picture", pixels * 16, storage)?;
         let bytes = pixels * size_of::<TraceAmbient>() as u64;
-        let found_light = buffers.buffer("light of the sky", bytes, storage)?;
+        let found_light = buffers.buffer(of_light, bytes, storage)?;
         let samples = f64::from(frame.grid * frame.grid);
         let paced = sample_ms.map_or(0, |ms| (DISPATCH_MS / (ms * samples).max(1.0e-9)) as u32);
         let rows = paced.max(PIXELS_PER_DISPATCH) / frame.camera.width.max(1);
@@ -166,8 +168,10 @@ impl ScenePipeline {
             let rows = rows.min(frame.camera.height - first_row);
             bands.push(self.rays(buffers, scene, &frame, [&picture, &found_light], states.as_ref(), rows)?);
         }
-        let means = || buffers.buffer("means of light", pixels * 32, storage);
-        let means = [means()?, means()?];
+        let means = |label| buffers.buffer(label, pixels * 32, storage);
+        // The last pass writes the second.
+        let means = [means("means of light")?, means(of_means)?];
+        const { assert!(SKYLIGHT_PASSES % 2 == 1) };
         for turn in 0..=SKYLIGHT_PASSES {
             let [from, to] = [&means[(turn as usize + 1) % 2], &means[turn as usize % 2]];
             for first_row in (0..frame.camera.height).step_by(rows as usize) {
@@ -178,7 +182,9 @@ impl ScenePipeline {
                 filters.push((bound, groups));
             }
         }
-        Ok(ScenePass { pipeline: self, bands, filters, picture })
+        let [_, means] = means;
+        let light = LightOnGpu { ambient: found_light, means };
+        Ok(ScenePass { pipeline: self, bands, filters, picture, light })
     }
 
     /// Room for what `rows` rows of pixels have so far, if their samples have dispatches of their own.
@@ -299,6 +305,7 @@ pub struct ScenePass<'a> {
     bands: Vec<SceneRays<'a>>,
     filters: Vec<(wgpu::BindGroup, [u32; 3])>,
     picture: wgpu::Buffer,
+    light: LightOnGpu,
 }
 
 impl ScenePass<'_> {
@@ -319,6 +326,12 @@ impl ScenePass<'_> {
     pub fn filters(&self) -> Vec<Dispatch<'_>> {
         let kernel = &self.pipeline.skylight;
         self.filters.iter().map(|(bound, groups)| kernel.dispatch(bound, *groups)).collect()
+    }
+
+    /// The light of sky and surfaces that it has found.
+    #[must_use]
+    pub fn light(&self) -> &LightOnGpu {
+        &self.light
     }
 
     /// The picture on the device: radiance and nearest distance, rows from the top.

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use downpour::ClipLight;
 use egui::{Id, Modal, RichText};
 
 use super::{App, Clock, Command, Picker, Wish};
@@ -35,7 +36,9 @@ impl Dialog {
         let place = document.place();
         let stem = place.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let output = place.with_file_name(format!("{stem}.png")).display().to_string();
-        Self::Render(JobSettings { output, is_clip: false, range_s: clock.range_s, fps: 24.0, samples: 2 })
+        let (is_clip, range_s, fps) = (false, clock.range_s, 24.0);
+        let light_frames = ClipLight::FRAMES;
+        Self::Render(JobSettings { output, is_clip, range_s, fps, samples: 2, light_frames })
     }
 }
 
@@ -184,6 +187,9 @@ impl App {
             if settings.is_clip {
                 let label = ui.label("frames per second");
                 ui.add(egui::DragValue::new(&mut settings.fps).range(1.0..=120.0)).labelled_by(label.id);
+                let label = ui.label("frames that share their light");
+                ui.add(egui::DragValue::new(&mut settings.light_frames).range(1..=ClipLight::MAX_FRAMES))
+                    .labelled_by(label.id);
             }
         });
         let mut is_open = true;

@@ -8,7 +8,9 @@ use downpour_render::glow::Glow;
 use downpour_render::picture::{Picture, PictureOptions, timed};
 use downpour_render::rain::{DropMasks, RefractionForm};
 use downpour_trace::frame_scene::FrameScene;
-use downpour_trace::picture::{KeptScene, render_picture_on};
+use downpour_trace::kept::PlateUse;
+use downpour_trace::picture::{KeptScene, find_light, render_picture_on};
+use downpour_trace::temporal::{LightHistory, LightWindow};
 use downpour_trace::wet_ground::WetGround;
 use downpour_weather::{Loaded, Weather};
 
@@ -323,10 +325,46 @@ impl Drawer {
         self.on_gpu.as_ref().map_or(Ok(None), |on_gpu| on_gpu.display(of, frame_scene, drops, masks, options))
     }
 
-    /// Draws a frame, seen through a pane if there is one. The plate of a scene that stands still is kept for so many frames of rays.
+    /// Finds the light of sky and surfaces in a frame of a clip for the frames after it.
+    pub(super) fn find_light(
+        &self,
+        window: &LightWindow,
+        frame_scene: &FrameScene,
+        masks: &DropMasks,
+        options: &PictureOptions,
+    ) -> Result<(), RendererError> {
+        let (scene, eye) = (&frame_scene.data, &frame_scene.viewpoint);
+        #[cfg(feature = "wgpu")]
+        if let Some(on_gpu) = &self.on_gpu {
+            return Ok(on_gpu.renderer().find_light(window, scene, eye, masks, options)?);
+        }
+        #[cfg(not(feature = "wgpu"))]
+        let _ = masks;
+        Ok(find_light(&mut self.kept.borrow_mut(), window, scene, eye, options)?)
+    }
+
+    /// True if the light of a frame of a clip is there for the frames after it.
+    pub(super) fn has_light(&self, time_s: f64) -> bool {
+        #[cfg(feature = "wgpu")]
+        if let Some(on_gpu) = &self.on_gpu {
+            return on_gpu.renderer().has_light(time_s);
+        }
+        self.kept.borrow().light.has(time_s)
+    }
+
+    /// Forgets the light of all frames: others would show another scene.
+    pub(super) fn forget_light(&self) {
+        #[cfg(feature = "wgpu")]
+        if let Some(on_gpu) = &self.on_gpu {
+            on_gpu.renderer().forget_light();
+        }
+        self.kept.borrow_mut().light = LightHistory::default();
+    }
+
+    /// Draws a frame, seen through a pane if there is one.
     pub(super) fn paint(
         &self,
-        kept_frames: u32,
+        of: PlateUse,
         frame_scene: &FrameScene,
         drops: &Drops,
         masks: &DropMasks,
@@ -335,20 +373,15 @@ impl Drawer {
     ) -> Result<Painted, RendererError> {
         #[cfg(feature = "wgpu")]
         if let Some(on_gpu) = &self.on_gpu {
-            return on_gpu.paint(kept_frames, frame_scene, drops, masks, options, through);
+            return on_gpu.paint(of, frame_scene, drops, masks, options, through);
         }
         let drops = match drops {
             Drops::Listed(drops) => frame_scene.place(&drops.drops),
             Drops::OfDevice(shown) => frame_scene.place(&shown.droplets),
         };
         let mut kept = self.kept.borrow_mut();
-        // Pictures that keep none leave that of others alone.
-        let mut own = if kept_frames > 0 { std::mem::take(&mut *kept) } else { KeptScene::default() };
         let (scene, eye) = (&frame_scene.data, &frame_scene.viewpoint);
-        let mut picture = render_picture_on(&mut own, kept_frames, scene, eye, &drops, masks, options)?;
-        if kept_frames > 0 {
-            *kept = own;
-        }
+        let mut picture = render_picture_on(&mut kept, of, scene, eye, &drops, masks, options)?;
         drop(kept);
         if let Some(PaneView { glass, environment, glow, camera }) = through {
             let environment = environment.as_ref().unwrap_or(&picture.environment);

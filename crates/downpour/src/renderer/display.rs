@@ -88,14 +88,14 @@ impl Renderer {
             return Ok(None);
         }
         let told = &mut |_| {};
-        let frame_scene = self.wet(time_s, told)?;
+        let frame_scene = self.seen(time_s, told)?;
         let drops = self.drops(&frame_scene, time_s, told)?;
         let medium = self.shower.medium(&frame_scene, drops.resolved(), &self.masks, time_s)?;
         let options = self.picture_options(&frame_scene, time_s, medium)?;
         let exposure = exposure * self.weather.exposure_factor(time_s);
         let (curve, edges) = (self.weather.camera.tone, self.weather.camera.edges);
         let tone = Some(Tone { exposure, curve, edges });
-        let of = PictureUse { kept_frames: self.options.kept_frames, tone };
+        let of = PictureUse { plate: self.plate_use(&frame_scene, time_s), tone };
         let read = self.drawer.display(of, &frame_scene, &drops, &self.masks, &options)?;
         self.drawn += 1;
         let begin_ms = begin.elapsed().as_secs_f64() * 1.0e3;

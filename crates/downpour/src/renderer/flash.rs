@@ -6,6 +6,7 @@
 use downpour_render::rain::{Exposure, TemporalResponse};
 use downpour_sim::field::{EyeDrop, FallingDrop, VisibleDrops};
 use downpour_trace::frame_scene::FrameScene;
+use downpour_trace::kept::PlateUse;
 use downpour_weather::{FlashExposure, Observer};
 
 use super::computer::Painted;
@@ -77,7 +78,7 @@ impl Renderer {
             response: TemporalResponse::Shutter,
             ..options.rain.exposure
         };
-        self.draw(&frame_scene, &drops, &options, 0, false)
+        self.draw(&frame_scene, &drops, &options, PlateUse::default(), false)
     }
 }
 

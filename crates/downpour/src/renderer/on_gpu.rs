@@ -15,6 +15,7 @@ use downpour_trace::frame_scene::FrameScene;
 use downpour_trace::gpu::{
     DisplayReadback, FieldDrops, PictureDrops, PictureOnGpu, PictureRenderer, PictureUse,
 };
+use downpour_trace::kept::PlateUse;
 use downpour_trace::wet_ground::WetGround;
 
 use super::RendererError;
@@ -57,6 +58,11 @@ impl OnGpu {
 
     pub(super) fn gpu(&self) -> &Gpu {
         &self.gpu
+    }
+
+    /// Pipelines of pictures.
+    pub(super) fn renderer(&self) -> &PictureRenderer {
+        &self.renderer
     }
 
     /// Drops that have room on the device.
@@ -104,14 +110,14 @@ impl OnGpu {
     /// Draws a frame, seen through a pane if there is one.
     pub(super) fn paint(
         &self,
-        kept_frames: u32,
+        of: PlateUse,
         frame_scene: &FrameScene,
         drops: &Drops,
         masks: &DropMasks,
         options: &PictureOptions,
         through: Option<&PaneView>,
     ) -> Result<Painted, RendererError> {
-        let of = PictureUse { kept_frames, tone: None };
+        let of = PictureUse { plate: of, tone: None };
         let mut drawn = self.drawn(of, frame_scene, drops, masks, options)?;
         let Some(PaneView { glass, environment, glow, camera }) = through else {
             return Ok(Painted::OnItsWay { read: Box::new(drawn.begin_read()?), through_glass: None });

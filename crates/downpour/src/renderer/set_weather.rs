@@ -53,6 +53,7 @@ impl Renderer {
         if !is_water_alike {
             self.water = None;
         }
+        self.drawer.forget_light();
         (self.weather, self.loaded, self.options) = (weather, loaded, options);
         (self.first, self.shower, self.masks) = (first, shower, masks);
         Ok(())

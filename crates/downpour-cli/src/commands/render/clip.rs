@@ -312,6 +312,7 @@ impl Clip<'_> {
             ("samples", arguments.samples.to_string()),
             ("sky rays", arguments.sky_rays.to_string()),
             ("ray spacing", arguments.ray_spacing.to_string()),
+            ("light frames", arguments.light_frames.to_string()),
             ("refraction", self.refraction.clone()),
             ("layers", arguments.layers.to_string()),
             ("streak atlas", self.atlas.clone().unwrap_or_else(|| "none".to_owned())),

@@ -1,0 +1,196 @@
+//! Light of sky and surfaces on surfaces over the frames of a clip: a temporal filter. Twin of `shaders/wgsl/render/temporal.wgsl`.
+//!
+//! Each frame draws other rays, so that what [`skylight`](crate::skylight) leaves of their noise flickers, in patches as wide as its means.
+//! Here the light of a frame becomes the mean of its own and of that of some frames before it. The position of a pixel's surface is
+//! projected into the picture of each of those frames; the pixel there counts as far as it shows the same surface, which is told as among
+//! the neighbors of a pixel, and as far as its mean differs by no more than the noise of both. What has moved, was hidden or was lit
+//! otherwise thus has the light of this frame alone. A mirror that shows a diffuse surface is found where the mirror is, by the position of
+//! its own base.
+//!
+//! A frame is averaged with frames at given times before it, not with all that have been drawn: it is the same whether the frames of a clip
+//! are rendered one after the other or it is rendered alone, for which the light of those frames is found first.
+
+use downpour_render::camera::Camera;
+use glam::{DVec3, Vec3, Vec4};
+use rayon::prelude::*;
+
+use crate::scene::SceneView;
+use crate::skylight::{SkylightSlot, skylight_alike, skylight_same, skylight_slot};
+use crate::trace::{TraceAmbient, trace_unpack};
+
+/// Greatest number of frames over which light is averaged.
+pub const MAX_LIGHT_FRAMES: usize = 8;
+
+/// A frame of a clip, and the frames before it with whose light its own is averaged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightWindow {
+    /// Time of the frame, s.
+    pub time_s: f64,
+    /// Origin of its positions in the world, m.
+    pub origin: DVec3,
+    /// Times of the frames before it, s, the latest first.
+    pub before_s: [Option<f64>; MAX_LIGHT_FRAMES - 1],
+}
+
+impl LightWindow {
+    /// True if the frame of a time is one of those before it.
+    #[must_use]
+    pub fn has(&self, time_s: f64) -> bool {
+        self.before_s.iter().flatten().any(|before| before.to_bits() == time_s.to_bits())
+    }
+}
+
+/// Light of sky and surfaces that the pixels of a frame have found.
+#[derive(Clone, Debug)]
+pub struct FrameLight<T> {
+    /// Time of the frame, s.
+    pub time_s: f64,
+    /// Origin of its positions in the world, m.
+    pub origin: DVec3,
+    /// Its camera.
+    pub camera: Camera,
+    /// The light: [`PixelLight`] on the CPU.
+    pub held: T,
+}
+
+/// The light of the last frames of a clip.
+#[derive(Clone, Debug)]
+pub struct LightHistory<T>(Vec<FrameLight<T>>);
+
+impl<T> Default for LightHistory<T> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<T> LightHistory<T> {
+    /// True if it has the frame of a time.
+    #[must_use]
+    pub fn has(&self, time_s: f64) -> bool {
+        self.0.iter().any(|light| light.time_s.to_bits() == time_s.to_bits())
+    }
+
+    /// Frames of a window before its own, the latest first, as far as they are there.
+    pub fn before<'a>(&'a self, window: &'a LightWindow) -> impl Iterator<Item = &'a FrameLight<T>> {
+        let of = |time_s: &f64| self.0.iter().find(|light| light.time_s.to_bits() == time_s.to_bits());
+        window.before_s.iter().flatten().filter_map(of)
+    }
+
+    /// Takes the light of the frame of a window, and gives back what no later frame will ask for: what is not in the window.
+    pub fn add(&mut self, window: &LightWindow, light: FrameLight<T>) -> Vec<FrameLight<T>> {
+        let (kept, out) = self.0.drain(..).partition(|light| window.has(light.time_s));
+        self.0 = kept;
+        self.0.push(light);
+        out
+    }
+}
+
+/// Light of sky and surfaces that each pixel of a picture has found.
+#[derive(Clone, Debug, Default)]
+pub struct PixelLight {
+    /// What its own rays have found, and where.
+    pub ambient: Vec<TraceAmbient>,
+    /// Means of it over neighbors, and the variance of their luminance: on the diffuse base, and in the first gloss or mirror.
+    pub means: Vec<[Vec4; 2]>,
+}
+
+/// A frame before another one. The same layout as `TemporalFrame` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct TemporalFrame {
+    /// Its camera.
+    pub camera: Camera,
+    /// From positions of the other frame to the same positions in its coordinates, m.
+    pub shift: Vec3,
+    /// Number of frames that have been added before.
+    pub turn: u32,
+    /// 1: no frame comes after it.
+    pub is_last: u32,
+    /// Nothing.
+    pub unused_a: u32,
+    /// Nothing.
+    pub unused_b: u32,
+    /// Nothing.
+    pub unused_c: u32,
+}
+
+impl TemporalFrame {
+    /// Frame `turn` of `count` frames before that of a window.
+    #[must_use]
+    pub fn new<T>(window: &LightWindow, light: &FrameLight<T>, turn: u32, count: u32) -> Self {
+        let shift = (window.origin - light.origin).as_vec3();
+        let is_last = u32::from(turn + 1 == count);
+        Self { camera: light.camera, shift, turn, is_last, unused_a: 0, unused_b: 0, unused_c: 0 }
+    }
+}
+
+/// Pixel of a camera's picture that shows a position; (-1, -1): none does.
+#[must_use]
+pub fn temporal_pixel(camera: &Camera, position: Vec3) -> [i32; 2] {
+    let from_eye = position - camera.eye;
+    if from_eye.dot(camera.forward) <= 0.0 {
+        return [-1; 2];
+    }
+    let at = camera.camera_project(from_eye).floor();
+    let is_inside = at.x >= 0.0 && at.x < camera.width as f32 && at.y >= 0.0 && at.y < camera.height as f32;
+    if is_inside { [at.x as i32, at.y as i32] } else { [-1; 2] }
+}
+
+impl SceneView<'_> {
+    /// The mean of a slot in the frame before, with its weight beside the frame's own: none where that frame does not show the same surface,
+    /// or shows it in another light.
+    fn temporal_before(
+        &self,
+        own: &PixelLight,
+        before: &PixelLight,
+        at: &TemporalFrame,
+        pixel: usize,
+        slot: usize,
+    ) -> Vec4 {
+        let eye = self.frame.camera.eye;
+        let found: SkylightSlot = skylight_slot(&own.ambient[pixel], slot, eye);
+        if found.slack <= 0.0 {
+            return Vec4::ZERO;
+        }
+        let mut position = found.position;
+        if found.roughness <= 0.0 {
+            // A mirror's position is that of what it shows: the mirror is where its own base is.
+            let base = skylight_slot(&own.ambient[pixel], 0, eye);
+            if base.slack <= 0.0 {
+                return Vec4::ZERO;
+            }
+            position = base.position;
+        }
+        let [column, row] = temporal_pixel(&at.camera, position + at.shift);
+        if column < 0 {
+            return Vec4::ZERO;
+        }
+        let there = row as usize * at.camera.width as usize + column as usize;
+        let mut other = skylight_slot(&before.ambient[there], slot, eye);
+        other.position -= at.shift;
+        let mean = before.means[there][slot];
+        let same = skylight_same(&found, &other, self.frame.wetness > 0);
+        let weight = same * skylight_alike(own.means[pixel][slot], mean);
+        (mean.truncate() * weight).extend(weight)
+    }
+
+    /// Change of each pixel of a picture by the light of the frames before it.
+    #[must_use]
+    pub fn temporal(&self, own: &PixelLight, before: &[(TemporalFrame, &PixelLight)]) -> Vec<Vec3> {
+        let eye = self.frame.camera.eye;
+        let change = |pixel: usize| {
+            let slots = [0, 1].map(|slot| {
+                let mean = own.means[pixel][slot].truncate();
+                let mut sum = mean.extend(1.0);
+                for (at, light) in before {
+                    sum += self.temporal_before(own, light, at, pixel, slot);
+                }
+                let ambient = &own.ambient[pixel];
+                let packed = if slot > 0 { &ambient.mirror } else { &ambient.base };
+                trace_unpack(packed, eye).factor * (sum.truncate() / sum.w - mean)
+            });
+            slots[0] + slots[1]
+        };
+        (0..own.ambient.len()).into_par_iter().map(change).collect()
+    }
+}
