@@ -71,12 +71,12 @@ def placed(file):
     return found
 
 
-def texture(file, used, raw):
-    """A bitmap texture; Mitsuba's v runs upward, glTF's downward."""
+def texture(file, used, factor):
+    """A texture of colors or light times a factor."""
     source = file.json["textures"][used["index"]]["source"]
-    image = file.folder / file.json["images"][source]["uri"]
-    flip = mi.ScalarTransform3f().scale([1, -1])
-    return {"type": "bitmap", "filename": str(image), "raw": raw, "to_uv": flip}
+    image = mi.Bitmap(str(file.folder / file.json["images"][source]["uri"]))
+    linear = np.array(image.convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False), np.float32)
+    return {"type": "bitmap", "bitmap": mi.Bitmap(linear * np.array(factor, np.float32)), "raw": True}
 
 
 def channel(file, used, index, factor):
@@ -85,8 +85,7 @@ def channel(file, used, index, factor):
     image = mi.Bitmap(str(file.folder / file.json["images"][source]["uri"]))
     pixels = np.array(image.convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.UInt8, True), np.float32) / 255.0
     one = np.ascontiguousarray(pixels[..., index : index + 1] * factor)
-    flip = mi.ScalarTransform3f().scale([1, -1])
-    return {"type": "bitmap", "bitmap": mi.Bitmap(one), "raw": True, "to_uv": flip}
+    return {"type": "bitmap", "bitmap": mi.Bitmap(one), "raw": True}
 
 
 def material(file, index, kind):
@@ -96,7 +95,7 @@ def material(file, index, kind):
     roughness, metallic = look.get("roughnessFactor", 1.0), look.get("metallicFactor", 1.0)
     color = {"type": "rgb", "value": base[:3]}
     if "baseColorTexture" in look:
-        color = texture(file, look["baseColorTexture"], False)
+        color = texture(file, look["baseColorTexture"], base[:3])
     if "metallicRoughnessTexture" in look:
         used = look["metallicRoughnessTexture"]
         roughness, metallic = channel(file, used, 1, roughness), channel(file, used, 2, metallic)
@@ -109,17 +108,20 @@ def material(file, index, kind):
         bsdf = {"type": "gltf", "base": color, "roughness": number(roughness), "metallic": number(metallic)}
     two_sided = {"type": "twosided", "inner": bsdf} if kind == "principled" else bsdf
     glow = found.get("emissiveFactor")
+    lit = found.get("emissiveTexture")
     strength = found.get("extensions", {}).get("KHR_materials_emissive_strength", {}).get("emissiveStrength", 1.0)
     emission = None if not glow or max(glow) == 0 else [strength * g for g in glow]
+    if emission:
+        # Without a texture the number stays one until it is an emitter's: a texture of its own may not be above 1.
+        emission = mi.load_dict(texture(file, lit, emission)) if lit else {"type": "rgb", "value": emission}
     if found.get("alphaMode") == "MASK" and "baseColorTexture" in look:
         source = file.json["textures"][look["baseColorTexture"]["index"]]["source"]
         pixels = np.array(mi.Bitmap(str(file.folder / file.json["images"][source]["uri"])))
         if pixels.shape[-1] == 4:
             hole = (pixels[..., 3:] >= 255 * found.get("alphaCutoff", 0.5)).astype(np.float32)
-            flip = mi.ScalarTransform3f().scale([1, -1])
-            alpha = {"type": "bitmap", "bitmap": mi.Bitmap(np.ascontiguousarray(hole)), "raw": True, "to_uv": flip}
+            alpha = {"type": "bitmap", "bitmap": mi.Bitmap(np.ascontiguousarray(hole)), "raw": True}
             two_sided = {"type": "mask", "inner": two_sided, "opacity": alpha}
-    return two_sided, emission
+    return mi.load_dict(two_sided), emission
 
 
 def shapes(name, kind):
@@ -140,9 +142,9 @@ def shapes(name, kind):
                 looks[of] = material(file, of, kind)
             bsdf, emission = looks[of]
             properties = mi.Properties()
-            properties["bsdf"] = mi.load_dict(bsdf)
-            if emission:
-                properties["emitter"] = mi.load_dict({"type": "area", "radiance": {"type": "rgb", "value": emission}})
+            properties["bsdf"] = bsdf
+            if emission is not None:
+                properties["emitter"] = mi.load_dict({"type": "area", "radiance": emission})
             smooth = "NORMAL" in attributes
             made = mi.Mesh(
                 f"part_{k}_{p}", len(positions), len(indices), properties, smooth, "TEXCOORD_0" in attributes

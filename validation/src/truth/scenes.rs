@@ -1,16 +1,19 @@
 //! Whole scenes: the light of a picture of `downpour render`, without rain, compared with Mitsuba's path tracer.
 //!
 //! Aim: on surfaces, a mean luminance within 5 % and a mean FLIP of at most 0.10. The scenes are generated: a street of boxes, a shed
-//! that is open on one side, an arcade, metal and glossy spheres on the ground, a courtyard; under a low sun, an overcast sky, and lamps
-//! at night. Mitsuba reads the same glTF file with a separate reader and has glTF's reflection model (`truth/gltf_bsdf.py`), so that
+//! that is open on one side, an arcade, metal and glossy spheres on the ground, a courtyard, and the project's own street; under a low
+//! sun, an overcast sky, and lamps at night. Mitsuba reads the same glTF file with a separate reader and has glTF's reflection model (`truth/gltf_bsdf.py`), so that
 //! only the light differs.
 
 mod models;
+mod own_street;
 mod skies;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+
+use own_street::OwnStreet;
 
 use super::mitsuba::Mitsuba;
 use super::{Options, create, run, write};
@@ -123,6 +126,25 @@ fn scenes(options: &Options, folder: &Path) -> Result<Vec<Scene>, String> {
                 eye: model.eye,
                 at: model.at,
                 fov_deg: model.fov_deg,
+            });
+        }
+    }
+    for of_night in [false, true] {
+        let street = OwnStreet::write(folder, of_night)?;
+        for (sky, map, scale) in &skies {
+            let is_night = sky == "night";
+            if is_night != of_night || (options.quick && sky != "low-sun" && !of_night) {
+                continue;
+            }
+            found.push(Scene {
+                name: format!("own-street-{sky}"),
+                model: street.file.clone(),
+                sky: map.clone(),
+                scale: *scale,
+                lamps: street.lamps.clone(),
+                eye: own_street::EYE,
+                at: own_street::AT,
+                fov_deg: own_street::FOV_DEG,
             });
         }
     }
