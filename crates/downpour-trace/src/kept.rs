@@ -33,6 +33,14 @@ pub struct PlateUse {
     pub light: Option<LightWindow>,
 }
 
+impl PlateUse {
+    /// Frames over which the light of the plate is averaged: none if it is refined.
+    #[must_use]
+    pub fn window(&self) -> Option<LightWindow> {
+        self.light.filter(|_| self.kept_frames == 0)
+    }
+}
+
 /// A picture of a scene with what it shows; `T` holds its pixels.
 #[derive(Clone, Debug)]
 pub struct KeptPlate<T> {

@@ -21,7 +21,7 @@ use crate::data::{RenderFrame, SceneData};
 use crate::kept::{KeptPlate, PlateUse};
 use crate::kept_environment::KeptEnvironment;
 use crate::scene::SceneView;
-use crate::temporal::{FrameLight, LightHistory, LightWindow, PixelLight, TemporalFrame};
+use crate::temporal::{LightHistory, LightWindow, PixelLight};
 use crate::trace::add_light;
 
 /// The frame of a picture.
@@ -78,8 +78,7 @@ pub fn find_light(
 ) -> Result<(), RenderError> {
     let frame = picture_frame(scene, viewpoint, options)?;
     let (_, held) = SceneView { data: scene, frame: &frame }.picture_and_light();
-    let (time_s, origin, camera) = (window.time_s, window.origin, frame.camera);
-    kept.light.add(window, FrameLight { time_s, origin, camera, held });
+    kept.light.add(window, frame.camera, held);
     Ok(())
 }
 
@@ -123,7 +122,7 @@ pub fn render_picture_on(
     if let Some((refined, count)) = plate.next(&frame, of.kept_frames) {
         let view = SceneView { data: scene, frame: &refined };
         let (mut next, light) = timed(&mut passes, "scene", || view.picture_and_light());
-        if let Some(window) = of.light.filter(|_| of.kept_frames == 0) {
+        if let Some(window) = of.window() {
             timed(&mut passes, "temporal filter", || {
                 average_light(&view, &mut next, &window, light, &mut kept.light);
             });
@@ -155,18 +154,12 @@ fn average_light(
     light: PixelLight,
     history: &mut LightHistory<PixelLight>,
 ) {
-    let before: Vec<_> = history.before(window).collect();
-    let count = before.len() as u32;
-    let before: Vec<_> = (0..)
-        .zip(before)
-        .map(|(turn, before)| (TemporalFrame::new(window, before, turn, count), &before.held))
-        .collect();
-    if count > 0 {
+    let before = history.before(window);
+    if !before.is_empty() {
         let change = view.temporal(&light, &before);
         picture.par_iter_mut().zip(change).for_each(|(pixel, change)| add_light(pixel, change));
     }
-    let (time_s, origin, camera) = (window.time_s, window.origin, view.frame.camera);
-    history.add(window, FrameLight { time_s, origin, camera, held: light });
+    history.add(window, view.frame.camera, light);
 }
 
 /// Traces rows of an environment map, and makes its coarser levels of them and of those that are there.

@@ -64,23 +64,34 @@ impl<T> Default for LightHistory<T> {
 }
 
 impl<T> LightHistory<T> {
+    /// The frame of a time.
+    fn find(&self, time_s: f64) -> Option<&FrameLight<T>> {
+        self.0.iter().find(|light| light.time_s.to_bits() == time_s.to_bits())
+    }
+
     /// True if it has the frame of a time.
     #[must_use]
     pub fn has(&self, time_s: f64) -> bool {
-        self.0.iter().any(|light| light.time_s.to_bits() == time_s.to_bits())
+        self.find(time_s).is_some()
     }
 
     /// Frames of a window before its own, the latest first, as far as they are there.
-    pub fn before<'a>(&'a self, window: &'a LightWindow) -> impl Iterator<Item = &'a FrameLight<T>> {
-        let of = |time_s: &f64| self.0.iter().find(|light| light.time_s.to_bits() == time_s.to_bits());
-        window.before_s.iter().flatten().filter_map(of)
+    #[must_use]
+    pub fn before(&self, window: &LightWindow) -> Vec<(TemporalFrame, &T)> {
+        let known: Vec<_> =
+            window.before_s.iter().flatten().filter_map(|&time_s| self.find(time_s)).collect();
+        let count = known.len() as u32;
+        (0..)
+            .zip(known)
+            .map(|(turn, light)| (TemporalFrame::new(window, light, turn, count), &light.held))
+            .collect()
     }
 
     /// Takes the light of the frame of a window, and gives back what no later frame will ask for: what is not in the window.
-    pub fn add(&mut self, window: &LightWindow, light: FrameLight<T>) -> Vec<FrameLight<T>> {
+    pub fn add(&mut self, window: &LightWindow, camera: Camera, held: T) -> Vec<FrameLight<T>> {
         let (kept, out) = self.0.drain(..).partition(|light| window.has(light.time_s));
         self.0 = kept;
-        self.0.push(light);
+        self.0.push(FrameLight { time_s: window.time_s, origin: window.origin, camera, held });
         out
     }
 }

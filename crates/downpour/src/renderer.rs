@@ -14,7 +14,6 @@ mod shower_of_model;
 mod source;
 mod truth;
 
-use std::borrow::Cow;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
@@ -397,11 +396,10 @@ impl Renderer {
         if time_s.to_bits() == self.options.first_s.to_bits() {
             return Ok(self.first.clone());
         }
-        Ok(match scenery(&self.first, &self.weather, &self.loaded).frame_scene(time_s)? {
-            Cow::Owned(frame_scene) => frame_scene,
-            // What stands still gets wet and dries all the same.
-            Cow::Borrowed(first) => first.seen_at(&self.weather, &self.loaded, time_s)?,
-        })
+        let (weather, loaded) = (&self.weather, &self.loaded);
+        // What stands still gets wet and dries all the same.
+        let at = if loaded.is_animated() { FrameScene::moved } else { FrameScene::seen_at };
+        Ok(at(&self.first, weather, loaded, time_s)?)
     }
 
     /// Water on ground and pane, not later than a time.

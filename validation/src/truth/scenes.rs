@@ -2,8 +2,8 @@
 //!
 //! Aim: on surfaces, a mean luminance within 5 % and a mean FLIP of at most 0.10. The scenes are generated: a street of boxes, a shed
 //! that is open on one side, an arcade, metal and glossy spheres on the ground, a courtyard, and the project's own street; under a low
-//! sun, an overcast sky, and lamps at night. Mitsuba reads the same glTF file with a separate reader and has glTF's reflection model (`truth/gltf_bsdf.py`), so that
-//! only the light differs.
+//! sun, an overcast sky, and lamps at night. Mitsuba reads the same glTF file with a separate reader and has glTF's reflection model
+//! (`truth/gltf_bsdf.py`), so that only the light differs.
 
 mod models;
 mod own_street;
@@ -108,13 +108,16 @@ fn scenes(options: &Options, folder: &Path) -> Result<Vec<Scene>, String> {
         let name = file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
         skies.push((name, file, 1.0));
     }
+    let fits = |sky: &str, of_night: bool| {
+        let is_night = sky == "night";
+        is_night == of_night && (!options.quick || is_night || sky == "low-sun")
+    };
     let mut found = Vec::new();
     for model in models::all() {
         let file = folder.join(format!("{}.gltf", model.name));
         model.write(&file)?;
         for (sky, map, scale) in &skies {
-            let night = sky == "night";
-            if model.of_night != night || (options.quick && sky != "low-sun" && !night) {
+            if !fits(sky, model.of_night) {
                 continue;
             }
             found.push(Scene {
@@ -122,7 +125,7 @@ fn scenes(options: &Options, folder: &Path) -> Result<Vec<Scene>, String> {
                 model: file.clone(),
                 sky: map.clone(),
                 scale: *scale,
-                lamps: if night { model.lamps.clone() } else { Vec::new() },
+                lamps: if model.of_night { model.lamps.clone() } else { Vec::new() },
                 eye: model.eye,
                 at: model.at,
                 fov_deg: model.fov_deg,
@@ -132,8 +135,7 @@ fn scenes(options: &Options, folder: &Path) -> Result<Vec<Scene>, String> {
     for of_night in [false, true] {
         let street = OwnStreet::write(folder, of_night)?;
         for (sky, map, scale) in &skies {
-            let is_night = sky == "night";
-            if is_night != of_night || (options.quick && sky != "low-sun" && !of_night) {
+            if !fits(sky, of_night) {
                 continue;
             }
             found.push(Scene {

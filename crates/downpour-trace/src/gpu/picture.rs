@@ -33,7 +33,7 @@ use crate::kept::{KeptPlate, PlateUse, seedless};
 use crate::kept_environment::KeptEnvironment;
 use crate::picture::picture_frame;
 use crate::scene::SceneView;
-use crate::temporal::{FrameLight, LightHistory, LightWindow, TemporalFrame};
+use crate::temporal::{LightHistory, LightWindow};
 
 /// Error of a picture on a GPU.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -108,8 +108,10 @@ pub struct PictureRenderer {
     frequencies: Arc<Mutex<Option<(Fluids, wgpu::Buffer)>>>,
     /// Time of a sample of the last picture that was read, ms.
     pace: Arc<Mutex<Option<f64>>>,
-    /// The scene and the masks of the last picture.
-    uploaded: Arc<Mutex<Option<(SceneOnGpu, RainOnGpu)>>>,
+    /// The scene of the last picture.
+    uploaded: Arc<Mutex<Option<SceneOnGpu>>>,
+    /// Its masks.
+    masks: Arc<Mutex<Option<RainOnGpu>>>,
     /// The plate of the last picture, if it was to be kept.
     plate: Arc<Mutex<Option<KeptPlate<wgpu::Buffer>>>>,
     /// The environment map of the last picture, if it was to be kept.
@@ -152,6 +154,7 @@ impl PictureRenderer {
             frequencies: Arc::default(),
             pace: Arc::default(),
             uploaded: Arc::default(),
+            masks: Arc::default(),
             plate: Arc::default(),
             environment: Arc::default(),
             light: Arc::default(),
@@ -216,16 +219,14 @@ impl PictureRenderer {
         masks: &DropMasks,
         options: &PictureOptions,
     ) -> Result<PictureOnGpu, GpuPictureError> {
-        let frame = picture_frame(scene, viewpoint, options)?;
-        if self.gpu.adapter().is_software() {
-            check_turns(&frame)?;
-        }
+        let frame = self.frame_of(scene, viewpoint, options)?;
         let _drawing = self.drawing.lock().unwrap_or_else(PoisonError::into_inner);
         let pool = &*self.pool;
         pool.begin_frame();
         let mut passes = FramePasses::after(&self.queries, pool, MAX_PASSES)?;
         let made_before = pool.made();
-        let uploaded = passes.host("upload", || self.upload(scene, masks))?;
+        let uploaded =
+            passes.host("upload", || Ok::<_, GpuError>((self.upload(scene)?, self.upload_masks(masks)?)))?;
         if let Some(ripples) = uploaded.0.ripples(pool)? {
             passes.run("ripples", &ripples.dispatches())?;
         }
@@ -263,7 +264,7 @@ impl PictureRenderer {
         let stands_still = next.is_none() && captured.is_empty();
         let mut is_captured = false;
         if let Some((frame, count)) = next {
-            let window = of.plate.light.filter(|_| of.plate.kept_frames == 0);
+            let window = of.plate.window();
             let labels = if window.is_some() { FRAME_LIGHT } else { ["light of the sky", "means of light"] };
             let traced = self.scene.prepare_paced(pool, &uploaded.0, &frame, pace, labels)?;
             let mut batches: Vec<Vec<_>> = traced.rays().into_iter().map(|band| vec![band]).collect();
@@ -393,6 +394,20 @@ impl PictureRenderer {
         })
     }
 
+    /// The frame of a picture that the device can trace.
+    fn frame_of(
+        &self,
+        scene: &SceneData,
+        viewpoint: &Viewpoint,
+        options: &PictureOptions,
+    ) -> Result<RenderFrame, GpuPictureError> {
+        let frame = picture_frame(scene, viewpoint, options)?;
+        if self.gpu.adapter().is_software() {
+            check_turns(&frame)?;
+        }
+        Ok(frame)
+    }
+
     /// Finds the light of sky and surfaces in a frame of a clip for the frames after it, without a picture.
     ///
     /// # Errors
@@ -402,18 +417,14 @@ impl PictureRenderer {
         window: &LightWindow,
         scene: &SceneData,
         viewpoint: &Viewpoint,
-        masks: &DropMasks,
         options: &PictureOptions,
     ) -> Result<(), GpuPictureError> {
-        let frame = picture_frame(scene, viewpoint, options)?;
-        if self.gpu.adapter().is_software() {
-            check_turns(&frame)?;
-        }
+        let frame = self.frame_of(scene, viewpoint, options)?;
         let _drawing = self.drawing.lock().unwrap_or_else(PoisonError::into_inner);
         let pool = &*self.pool;
         pool.begin_frame();
         let mut passes = FramePasses::new(&self.gpu, 1)?;
-        let (scene, _) = self.upload(scene, masks)?;
+        let scene = self.upload(scene)?;
         if let Some(ripples) = scene.ripples(pool)? {
             passes.run("ripples", &ripples.dispatches())?;
         }
@@ -434,17 +445,13 @@ impl PictureRenderer {
         traced: &ScenePass<'_>,
     ) -> Result<(), GpuError> {
         let history = self.history.lock().unwrap_or_else(PoisonError::into_inner);
-        let before: Vec<_> = history.before(window).collect();
-        let count = before.len() as u32;
-        let before: Vec<_> = (0..)
-            .zip(before)
-            .map(|(turn, before)| (TemporalFrame::new(window, before, turn, count), &before.held))
-            .collect();
-        if count > 0 {
+        let before = history.before(window);
+        if !before.is_empty() {
             let (light, picture) = (traced.light(), traced.picture());
             let pass = self.temporal.prepare(&*self.pool, frame, light, &before, picture)?;
             passes.run_each("temporal filter", &pass.dispatches())?;
         }
+        drop(before);
         drop(history);
         self.keep_light(window, frame, traced.light());
         Ok(())
@@ -452,9 +459,8 @@ impl PictureRenderer {
 
     /// Keeps the light of a frame of a clip for those after it.
     fn keep_light(&self, window: &LightWindow, frame: &RenderFrame, light: &LightOnGpu) {
-        let (time_s, origin, camera) = (window.time_s, window.origin, frame.camera);
         let mut history = self.history.lock().unwrap_or_else(PoisonError::into_inner);
-        for out in history.add(window, FrameLight { time_s, origin, camera, held: light.clone() }) {
+        for out in history.add(window, frame.camera, light.clone()) {
             for (label, buffer) in FRAME_LIGHT.into_iter().zip([out.held.ambient, out.held.means]) {
                 self.pool.give_back(label, buffer);
             }
@@ -472,20 +478,22 @@ impl PictureRenderer {
         *self.history.lock().unwrap_or_else(PoisonError::into_inner) = LightHistory::default();
     }
 
-    /// Brings a scene and masks to the device: what the scene shares with that of the last picture is there, and so are the masks. After an
-    /// error nothing is.
-    fn upload(&self, scene: &SceneData, masks: &DropMasks) -> Result<(SceneOnGpu, RainOnGpu), GpuError> {
+    /// Brings a scene to the device: what it shares with that of the last picture is there. After an error nothing is.
+    fn upload(&self, scene: &SceneData) -> Result<SceneOnGpu, GpuError> {
         let pool = &*self.pool;
         let mut last = self.uploaded.lock().unwrap_or_else(PoisonError::into_inner);
-        let (scene, masks) = match last.take() {
-            Some((before, of_masks)) => {
-                (before.renewed(pool, scene)?, self.rain.upload_after(masks, Some(&of_masks))?)
-            }
-            None => (SceneOnGpu::new(pool, scene)?, self.rain.upload_after(masks, None)?),
+        let scene = match last.take() {
+            Some(before) => before.renewed(pool, scene)?,
+            None => SceneOnGpu::new(pool, scene)?,
         };
-        *last = Some((scene.clone(), masks.clone()));
-        drop(last);
-        Ok((scene, masks))
+        Ok(last.insert(scene).clone())
+    }
+
+    /// Brings masks to the device: those of the last picture are there.
+    fn upload_masks(&self, masks: &DropMasks) -> Result<RainOnGpu, GpuError> {
+        let mut last = self.masks.lock().unwrap_or_else(PoisonError::into_inner);
+        let before = last.take();
+        Ok(last.insert(self.rain.upload_after(masks, before.as_ref())?).clone())
     }
 
     /// The environment map of a frame, and the rows of it that are to be traced: in `kept`, if it stays from picture to picture.

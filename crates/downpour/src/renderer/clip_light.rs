@@ -63,15 +63,17 @@ impl ClipLight {
 impl Renderer {
     /// What of the plate of a frame stays, and with which frames its light is averaged.
     pub(super) fn plate_use(&self, frame_scene: &FrameScene, time_s: f64) -> PlateUse {
-        let kept_frames = self.options.kept_frames;
         let window = |light: ClipLight| LightWindow {
             time_s,
             origin: frame_scene.origin,
             before_s: light.before(self.options.first_s, time_s),
         };
-        // The light of a plate that is refined has its mean over frames there.
-        let light = self.options.clip_light.filter(|light| kept_frames == 0 && light.frames > 1);
-        PlateUse { kept_frames, light: light.map(window) }
+        PlateUse { kept_frames: self.options.kept_frames, light: self.clip_light().map(window) }
+    }
+
+    /// Frames over which light is averaged, if there are several. The light of a plate that is refined has its mean over frames there.
+    fn clip_light(&self) -> Option<ClipLight> {
+        self.options.clip_light.filter(|light| self.options.kept_frames == 0 && light.frames > 1)
     }
 
     /// Finds the light of the frames before that of a time, as far as it is not there.
@@ -80,9 +82,7 @@ impl Renderer {
         time_s: f64,
         told: &mut dyn FnMut(Progress),
     ) -> Result<(), RendererError> {
-        let Some(light) = self.options.clip_light.filter(|_| self.options.kept_frames == 0) else {
-            return Ok(());
-        };
+        let Some(light) = self.clip_light() else { return Ok(()) };
         let before = light.before(self.options.first_s, time_s);
         for time_s in before.into_iter().flatten().rev().collect::<Vec<_>>() {
             if self.drawer.has_light(time_s) {
@@ -92,7 +92,7 @@ impl Renderer {
             told(Progress { what: "light of the frames before", parts: [0; 2] });
             let options = self.picture_options(&frame_scene, time_s, RainMedium::default())?;
             if let Some(window) = self.plate_use(&frame_scene, time_s).light {
-                self.drawer.find_light(&window, &frame_scene, &self.masks, &options)?;
+                self.drawer.find_light(&window, &frame_scene, &options)?;
             }
         }
         Ok(())

@@ -330,16 +330,13 @@ impl Drawer {
         &self,
         window: &LightWindow,
         frame_scene: &FrameScene,
-        masks: &DropMasks,
         options: &PictureOptions,
     ) -> Result<(), RendererError> {
         let (scene, eye) = (&frame_scene.data, &frame_scene.viewpoint);
         #[cfg(feature = "wgpu")]
         if let Some(on_gpu) = &self.on_gpu {
-            return Ok(on_gpu.renderer().find_light(window, scene, eye, masks, options)?);
+            return Ok(on_gpu.renderer().find_light(window, scene, eye, options)?);
         }
-        #[cfg(not(feature = "wgpu"))]
-        let _ = masks;
         Ok(find_light(&mut self.kept.borrow_mut(), window, scene, eye, options)?)
     }
 
