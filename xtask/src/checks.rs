@@ -34,24 +34,12 @@ pub(crate) fn test(all: bool) -> Result<(), String> {
 
 /// Spoiled files by the hundred thousand, lattices over a million steps, and water by height on many panes.
 fn sweep() -> Result<(), String> {
-    let mutations = ["test", "--locked", "-p", "downpour-scene", "--all-features", "--test", "mutations"];
-    run::cargo(&mutations, &[("DOWNPOUR_MUTATIONS", "300000")])?;
-    let lattice = [
-        "test",
-        "--release",
-        "--locked",
-        "-p",
-        "downpour-lattice",
-        "--test",
-        "puddle",
-        "--test",
-        "glass_water",
-        "--test",
-        "glass_flow",
-    ];
-    run::cargo(&[&lattice[..], &["--", "--ignored"]].concat(), &[])?;
-    let streets = ["test", "--release", "--locked", "-p", "downpour-street", "--test", "streets"];
-    run::cargo(&[&streets[..], &["--", "--ignored"]].concat(), &[])
+    // Of the whole workspace, as above: the features are the same, and nothing is built again.
+    let workspace = ["test", "--workspace", "--all-features", "--locked"];
+    let mutations = ["--test", "mutations"];
+    run::cargo(&[&workspace[..], &mutations].concat(), &[("DOWNPOUR_MUTATIONS", "300000")])?;
+    let long = ["--test", "puddle", "--test", "glass_water", "--test", "glass_flow", "--test", "streets"];
+    run::cargo(&[&workspace[..], &long, &["--", "--ignored"]].concat(), &[])
 }
 
 /// Formatting, lints, each crate separately, documentation.

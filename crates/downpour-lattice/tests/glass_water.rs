@@ -81,7 +81,7 @@ fn water_is_kept_to_the_unit_for_twenty_thousand_ticks() {
 }
 
 #[test]
-#[ignore = "a million ticks: run with --release"]
+#[ignore = "a million ticks take half a minute"]
 fn water_is_kept_to_the_unit_for_a_million_ticks() {
     keeps_its_water(1_000_000, [32, 40]);
 }

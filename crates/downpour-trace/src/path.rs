@@ -37,7 +37,7 @@ use downpour_shaders::render::puddle_water::{
 };
 use downpour_shaders::render::scene::{
     SCENE_FAR, SCENE_LAMP_GLASS, SCENE_LAYERS, SCENE_NONE, SCENE_PICTURE, SCENE_SEEN_BODY, SCENE_UNLIT,
-    SKYLIGHT_SLACK,
+    SKYLIGHT_SLACK, TEXTURE_TAPS,
 };
 use downpour_shaders::render::wet::WET_FAR;
 use glam::{Vec2, Vec3};
@@ -259,7 +259,17 @@ impl SceneView<'_> {
                 path.radiance += throughput * beyond;
                 return path;
             };
-            let mut found = data.surface_at(&hit, start, towards, width);
+            let mut material = data.corners[hit.triangle as usize * 3].material;
+            let (facet, position) = (data.surface_facet(&hit, towards), start + towards * hit.distance);
+            let met = match water {
+                None => self.puddle_water_find(position, facet.y),
+                Some(_) => None,
+            };
+            if layer == 0 && met.is_none() && path_same_surface(last, material, facet, position, hit.distance)
+            {
+                return ViewPath { again: true, ..*last };
+            }
+            let mut found = data.surface_at(&hit, start, towards, width, TEXTURE_TAPS);
             if let (false, Some(wet)) = (under, &wet) {
                 let wetness = self.wet_exposure(&found, wet);
                 if wetness > 0.0 {
@@ -268,7 +278,6 @@ impl SceneView<'_> {
                     found = wet_surface(&found, wetness, towards, &relief);
                 }
             }
-            let mut material = data.corners[hit.triangle as usize * 3].material;
             let mut drop = None;
             let is_glazed = frame.glazing > 0 && !under && frame.projection == SCENE_PICTURE;
             if let (true, Some(wet)) = (is_glazed, &wet) {
@@ -279,10 +288,6 @@ impl SceneView<'_> {
             }
             let mut distance = hit.distance;
             let mut depth = Vec2::ZERO;
-            let met = match water {
-                None => self.puddle_water_find(found.position, found.facet.y),
-                Some(_) => None,
-            };
             if let Some(met) = met {
                 // Back along the ray to where it came through the surface.
                 distance = (hit.distance - met.rise / (-towards.y).max(0.01)).max(near);
@@ -298,10 +303,6 @@ impl SceneView<'_> {
                     clear: 1.0,
                     scattering_albedo: Vec3::ZERO,
                 });
-            } else if layer == 0
-                && path_same_surface(last, material, found.facet, found.position, hit.distance)
-            {
-                return ViewPath { again: true, ..*last };
             }
             if let (true, Some(water)) = (under, &water) {
                 let rise = (water.level - found.position.y).max(0.0);
@@ -464,7 +465,7 @@ impl SceneView<'_> {
                     light = light.path_accumulated(&ray, beyond, of_shown);
                     break;
                 };
-                let mut found = data.surface_at(&hit, from, ray.along, ray.width);
+                let mut found = data.surface_at(&hit, from, ray.along, ray.width, 1.0);
                 if frame.wetness > 0 && bounce == 0 && !under {
                     let wet = data.wet_load();
                     let wetness = self.wet_exposure(&found, &wet);

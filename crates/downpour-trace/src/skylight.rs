@@ -10,13 +10,15 @@
 //! as it mirrors the same direction, within the lobe. Pixels whose rays have not looked for light ([`RenderFrame::ray_spacing`]) count
 //! only where no other does: what they show is what others have found, or the open sky where no other shows their surface.
 //!
+//! A pixel at an edge shows a second surface, whose light is that of the pixels around it which show it as their first.
+//!
 //! [`RenderFrame::ray_spacing`]: crate::data::RenderFrame::ray_spacing
 
 use downpour_math::color::color_luminance;
 use downpour_render::spacing::window;
 use downpour_shaders::render::scene::{
     SKYLIGHT_FILM, SKYLIGHT_FILM_EDGE, SKYLIGHT_GUESSED, SKYLIGHT_LOBE, SKYLIGHT_LOOSE,
-    SKYLIGHT_LOOSE_ROUGHNESS, SKYLIGHT_NOISE, SKYLIGHT_PASSES, SKYLIGHT_RADIUS, SKYLIGHT_STEP,
+    SKYLIGHT_LOOSE_ROUGHNESS, SKYLIGHT_NOISE, SKYLIGHT_OWN, SKYLIGHT_PASSES, SKYLIGHT_RADIUS, SKYLIGHT_STEP,
 };
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
@@ -111,8 +113,12 @@ struct Pixels<'a> {
 
 impl SceneView<'_> {
     /// Light of sky and surfaces in each pixel: means over its neighbors of what their rays have found, for its two slots, with the
-    /// variance of the means' luminance.
-    pub(crate) fn skylight(&self, ambient: &[TraceAmbient]) -> Vec<[Vec4; 2]> {
+    /// variance of the means' luminance; and what it adds to the picture. `others`: what the rays have found on other surfaces.
+    pub(crate) fn skylight(
+        &self,
+        ambient: &[TraceAmbient],
+        others: &[TraceAmbient],
+    ) -> (Vec<[Vec4; 2]>, Vec<Vec3>) {
         let eye = self.frame.camera.eye;
         let slots: Vec<[SkylightSlot; 2]> =
             ambient.par_iter().map(|pixel| [0, 1].map(|slot| skylight_slot(pixel, slot, eye))).collect();
@@ -128,19 +134,30 @@ impl SceneView<'_> {
         for pass in 0..SKYLIGHT_PASSES {
             means = all(&|x, y, k| pixels.skylight_wide(&means, x, y, k, SKYLIGHT_STEP << pass));
         }
-        means
+        let shown = |(k, pixel): (usize, &TraceAmbient)| {
+            let (x, y) = (k as u32 % width, k as u32 / width);
+            let other = |slot| pixels.skylight_other(&means, others, x, y, slot);
+            light_shown(pixel, &means[k], eye) + (other(0) + other(1))
+        };
+        let light = ambient.par_iter().enumerate().map(shown).collect();
+        (means, light)
     }
 }
 
 /// Light that the means of a pixel's two slots add to it, as an eye sees it.
-pub(crate) fn light_shown(pixel: &TraceAmbient, [of_base, of_mirror]: &[Vec4; 2], eye: Vec3) -> Vec3 {
+fn light_shown(pixel: &TraceAmbient, [of_base, of_mirror]: &[Vec4; 2], eye: Vec3) -> Vec3 {
     let [base, mirror] = [&pixel.base, &pixel.mirror].map(|slot| trace_unpack(slot, eye).factor);
     base * of_base.truncate() + mirror * of_mirror.truncate()
 }
 
+/// A slot of a surface in a pixel.
+pub(crate) fn skylight_packed(pixel: &TraceAmbient, slot: usize) -> &TraceSlot {
+    if slot > 0 { &pixel.mirror } else { &pixel.base }
+}
+
 /// A slot of a pixel, unpacked.
 pub(crate) fn skylight_slot(pixel: &TraceAmbient, slot: usize, eye: Vec3) -> SkylightSlot {
-    skylight_unpack(if slot > 0 { &pixel.mirror } else { &pixel.base }, eye)
+    skylight_unpack(skylight_packed(pixel, slot), eye)
 }
 
 /// A slot, unpacked.
@@ -198,6 +215,40 @@ impl Pixels<'_> {
         // How many there are; of one alone nothing is known.
         let count = weight * weight / weights;
         mean.extend(variance / (count - 1.0).max(0.5) + luminance * luminance / (count * count))
+    }
+
+    /// Light on the other surface of a pixel, times what that makes of it: the mean of the means of the pixels around it that show that
+    /// surface first; what has been found of it where it is the other one counts little beside them.
+    fn skylight_other(
+        &self,
+        means: &[[Vec4; 2]],
+        others: &[TraceAmbient],
+        x: u32,
+        y: u32,
+        slot: usize,
+    ) -> Vec3 {
+        let camera = &self.frame.camera;
+        let pixel = &others[(y * camera.width + x) as usize];
+        let own = skylight_slot(pixel, slot, camera.eye);
+        if own.slack <= 0.0 {
+            return Vec3::ZERO;
+        }
+        let (mut sum, mut weight) = (Vec3::ZERO, 0.0);
+        for row in window(y, 1, SKYLIGHT_RADIUS, 0, camera.height) {
+            for column in window(x, 1, SKYLIGHT_RADIUS, 0, camera.width) {
+                let other = (row * camera.width + column) as usize;
+                let hat = skylight_hat(x, column) * skylight_hat(y, row);
+                let counts = hat * skylight_near(&own, &self.slots[other][slot], self.wet);
+                let its = skylight_slot(&others[other], slot, camera.eye);
+                let mut few = hat * SKYLIGHT_OWN * its.weight;
+                if row != y || column != x {
+                    few *= skylight_near(&own, &its, self.wet);
+                }
+                sum += means[other][slot].truncate() * counts + its.light * few;
+                weight += counts + few;
+            }
+        }
+        trace_unpack(skylight_packed(pixel, slot), camera.eye).factor * (sum / weight)
     }
 
     /// The mean of means `step` pixels apart that show the same.

@@ -2,16 +2,16 @@
 //! `shaders/wgsl/render/surface.wgsl`.
 
 use downpour_bvh::{Hit, bvh_blocker, bvh_hit};
-use downpour_math::ops;
 use downpour_shaders::render::scene::{
-    SCENE_BLENDED, SCENE_LAYERS, SCENE_MASKED, SCENE_NONE, SCENE_UNLIT, SURFACE_DENSE, SURFACE_OPEN,
-    SURFACE_POROUS,
+    SCENE_BLENDED, SCENE_LAYERS, SCENE_MASKED, SCENE_NONE, SCENE_UNLIT, SURFACE_DENSE, SURFACE_GRAZING,
+    SURFACE_OBLIQUE, SURFACE_OPEN, SURFACE_POROUS,
 };
 use downpour_sim::shelter::Holes;
 use glam::{Vec3, Vec4};
 
 use crate::data::{RenderCorner, SceneData};
 use crate::material::RenderMaterial;
+use crate::texture::TextureFootprint;
 
 /// Everything that shading needs at a hit.
 #[derive(Clone, Copy, Debug)]
@@ -81,21 +81,21 @@ impl SceneData {
     }
 
     /// A texture of a material's row, or white.
-    fn surface_texture(&self, row: u32, uv: Vec4, spread: f32) -> Vec4 {
-        if row == SCENE_NONE { Vec4::ONE } else { self.texture_sample(row, uv, spread) }
+    fn surface_texture(&self, row: u32, uv: Vec4, footprint: &TextureFootprint) -> Vec4 {
+        if row == SCENE_NONE { Vec4::ONE } else { self.texture_sample(row, uv, footprint) }
     }
 
     /// Alpha at a hit.
     pub(crate) fn surface_alpha(&self, material: &RenderMaterial, hit: &Hit) -> f32 {
         material.base.w
-            * self.surface_texture(material.maps[0], self.surface_uv(hit), -20.0).w
+            * self.surface_texture(material.maps[0], self.surface_uv(hit), &TextureFootprint::default()).w
             * self.surface_color(hit).w
     }
 
-    /// Emitted radiance at a hit: `spread` is that of [`SceneData::texture_sample`].
-    pub(crate) fn surface_emission(&self, hit: &Hit, spread: f32) -> Vec3 {
+    /// Emitted radiance at a hit.
+    pub(crate) fn surface_emission(&self, hit: &Hit, footprint: &TextureFootprint) -> Vec3 {
         let material = self.material_load(self.corners_of(hit)[0].material);
-        material.emission * self.surface_texture(material.maps[3], self.surface_uv(hit), spread).truncate()
+        material.emission * self.surface_texture(material.maps[3], self.surface_uv(hit), footprint).truncate()
     }
 
     /// True if there is a hole at a hit.
@@ -153,23 +153,45 @@ impl SceneData {
         self.mix(hit, |c| c.color.into())
     }
 
-    /// Logarithm to base 2 of the width of a ray's cone at a hit, in units of texture coordinates: the mean scale of
-    /// coordinates over the triangle, times the cone's width, over the cosine at the surface.
-    fn surface_spread(&self, hit: &Hit, geometric: Vec3, direction: Vec3, width: f32) -> f32 {
-        let corners = self.corners_of(hit);
-        let uv = |k: usize| [corners[k].uv[0], corners[k].uv[1]];
-        let [a, b, c] = [uv(0), uv(1), uv(2)];
-        let (bx, by, cx, cy) = (b[0] - a[0], b[1] - a[1], c[0] - a[0], c[1] - a[1]);
-        let area_uv = (bx * cy - by * cx).abs();
-        let area = geometric.dot(geometric).sqrt();
-        let cosine = (geometric.dot(direction).abs() / area.max(1.0e-20)).max(0.05);
-        0.5 * ops::log2(area_uv.max(1.0e-20) / area.max(1.0e-20)) + ops::log2(width.max(1.0e-12) / cosine)
+    /// Where a ray's cone, of a width in m at the hit, meets the triangle: as wide across the ray, and in the direction in which the ray
+    /// goes over the triangle longer by the cosine between ray and normal.
+    fn surface_footprint(
+        &self,
+        hit: &Hit,
+        geometric: Vec3,
+        direction: Vec3,
+        width: f32,
+        taps: f32,
+    ) -> TextureFootprint {
+        let [a, b, c] = [0, 1, 2].map(|k| Vec4::from(self.corners_of(hit)[k].uv));
+        let (b, c) = (b - a, c - a);
+        let triangle = &self.triangles[hit.triangle as usize];
+        let (edge_1, edge_2) = (Vec3::from(triangle.edge_1), Vec3::from(triangle.edge_2));
+        let normal = geometric / geometric.dot(geometric).sqrt().max(1.0e-20);
+        let cosine = normal.dot(direction);
+        let over = direction - normal * cosine;
+        let chosen = if over.dot(over) > SURFACE_OBLIQUE { over } else { edge_1 };
+        let along = chosen / chosen.dot(chosen).sqrt().max(1.0e-20);
+        let across = normal.cross(along);
+        // What the edges are to be multiplied by for one meter in a direction.
+        let inverse = width / geometric.dot(geometric).max(1.0e-30);
+        let longer = inverse / cosine.abs().max(SURFACE_GRAZING);
+        let mapped =
+            |axis: Vec3| b * axis.cross(edge_2).dot(geometric) + c * edge_1.cross(axis).dot(geometric);
+        TextureFootprint { along: mapped(along) * longer, across: mapped(across) * inverse, taps }
     }
 
     /// The cross product of the edges of the triangle that was hit: its normal, as long as twice its area.
     pub(crate) fn surface_edges(&self, hit: &Hit) -> Vec3 {
         let triangle = &self.triangles[hit.triangle as usize];
         Vec3::from(triangle.edge_1).cross(Vec3::from(triangle.edge_2))
+    }
+
+    /// The normal of the triangle that was hit, facing the viewer.
+    pub(crate) fn surface_facet(&self, hit: &Hit, direction: Vec3) -> Vec3 {
+        let geometric = self.surface_edges(hit);
+        let facing = if geometric.dot(direction) > 0.0 { -1.0 } else { 1.0 };
+        geometric * (facing / geometric.dot(geometric).sqrt().max(1.0e-20))
     }
 
     /// Change of the corners' normals per meter of the triangle that was hit.
@@ -182,31 +204,31 @@ impl SceneData {
         (turned / length.max(1.0e-20)).sqrt()
     }
 
-    /// Everything that shading needs at a hit. `cone` is the width of the ray at distance 1.
+    /// Everything that shading needs at a hit. `cone` is the width of the ray at distance 1; `taps`: see [`TextureFootprint`].
     #[must_use]
-    pub fn surface_at(&self, hit: &Hit, origin: Vec3, direction: Vec3, cone: f32) -> Surface {
+    pub fn surface_at(&self, hit: &Hit, origin: Vec3, direction: Vec3, cone: f32, taps: f32) -> Surface {
         let material = self.material_load(self.corners_of(hit)[0].material);
         let geometric = self.surface_edges(hit);
         let facing = if geometric.dot(direction) > 0.0 { -1.0 } else { 1.0 };
-        let facet = geometric * (facing / geometric.dot(geometric).sqrt().max(1.0e-20));
+        let facet = self.surface_facet(hit, direction);
 
         let uv = self.surface_uv(hit);
-        let spread = self.surface_spread(hit, geometric, direction, cone * hit.distance);
+        let footprint = self.surface_footprint(hit, geometric, direction, cone * hit.distance, taps);
         let (flags, maps, more) = (material.flags, material.maps, material.more);
 
-        let base = material.base * self.surface_texture(maps[0], uv, spread) * self.surface_color(hit);
-        let rough = self.surface_texture(maps[1], uv, spread);
+        let base = material.base * self.surface_texture(maps[0], uv, &footprint) * self.surface_color(hit);
+        let rough = self.surface_texture(maps[1], uv, &footprint);
         let metallic = (material.metallic * rough.z).clamp(0.0, 1.0);
         let roughness = (material.roughness * rough.y).clamp(0.0, 1.0);
-        let emission = material.emission * self.surface_texture(maps[3], uv, spread).truncate();
+        let emission = material.emission * self.surface_texture(maps[3], uv, &footprint).truncate();
         let occlusion =
-            1.0 + material.occlusion_strength * (self.surface_texture(more[0], uv, spread).x - 1.0);
-        let transmission = material.transmission * self.surface_texture(more[1], uv, spread).x;
+            1.0 + material.occlusion_strength * (self.surface_texture(more[0], uv, &footprint).x - 1.0);
+        let transmission = material.transmission * self.surface_texture(more[1], uv, &footprint).x;
 
         let mut normal = self.mix(hit, |c| Vec3::from(c.normal).extend(0.0)).truncate() * facing;
         if maps[2] != SCENE_NONE {
             let tangent = self.mix(hit, |c| c.tangent.into());
-            let map = self.surface_texture(maps[2], uv, spread).truncate() * 2.0 - Vec3::ONE;
+            let map = self.surface_texture(maps[2], uv, &footprint).truncate() * 2.0 - Vec3::ONE;
             let side = (normal * facing).cross(tangent.truncate()) * tangent.w;
             let scale = material.normal_scale;
             normal = tangent.truncate() * (map.x * scale) + side * (map.y * scale) + normal * map.z.max(0.05);

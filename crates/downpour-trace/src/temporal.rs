@@ -15,7 +15,7 @@ use glam::{DVec3, Vec3, Vec4};
 use rayon::prelude::*;
 
 use crate::scene::SceneView;
-use crate::skylight::{SkylightSlot, skylight_alike, skylight_same, skylight_slot};
+use crate::skylight::{SkylightSlot, skylight_alike, skylight_packed, skylight_same, skylight_slot};
 use crate::trace::{TraceAmbient, trace_unpack};
 
 /// Greatest number of frames over which light is averaged.
@@ -196,8 +196,7 @@ impl SceneView<'_> {
                 for (at, light) in before {
                     sum += self.temporal_before(own, light, at, pixel, slot);
                 }
-                let ambient = &own.ambient[pixel];
-                let packed = if slot > 0 { &ambient.mirror } else { &ambient.base };
+                let packed = skylight_packed(&own.ambient[pixel], slot);
                 trace_unpack(packed, eye).factor * (sum.truncate() / sum.w - mean)
             });
             slots[0] + slots[1]

@@ -5,10 +5,58 @@ use downpour_math::ops;
 use downpour_shaders::render::scene::{
     SCENE_MIRROR_U, SCENE_MIRROR_V, SCENE_REPEAT_U, SCENE_REPEAT_V, SCENE_ROOTED,
 };
-use glam::{Vec2, Vec4};
+use glam::{Vec2, Vec4, Vec4Swizzles as _};
 
 use crate::data::SceneData;
 use crate::material::RenderSlot;
+
+/// The place where a ray's cone meets a surface, an ellipse, in both sets of texture coordinates (the second in `zw`).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TextureFootprint {
+    /// Its longer diameter on the surface.
+    pub along: Vec4,
+    /// Its shorter diameter.
+    pub across: Vec4,
+    /// Samples along the longer one, at most; those below 1 are 1.
+    pub taps: f32,
+}
+
+impl TextureFootprint {
+    /// As wide in all directions, in units of texture coordinates.
+    #[must_use]
+    pub fn round(width: f32) -> Self {
+        Self {
+            along: Vec4::new(width, 0.0, width, 0.0),
+            across: Vec4::new(0.0, width, 0.0, width),
+            taps: 1.0,
+        }
+    }
+}
+
+/// Samples of a texture in place of a footprint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TextureTaps {
+    /// The line on which they lie with equal spaces, texels: the first and the last are half a space from its ends.
+    pub line: Vec2,
+    /// Their number.
+    pub taps: f32,
+    /// Width of each, texels; at least 1.
+    pub width: f32,
+}
+
+/// Samples in place of an ellipse with two diameters in texels: `most` of them at most. They are as far apart as gives the line and the
+/// widths together the ellipse's extent, so that nothing jumps where a sample is added.
+#[must_use]
+pub fn texture_taps(along: Vec2, across: Vec2, most: f32) -> TextureTaps {
+    let (first, second) = (along.dot(along), across.dot(across));
+    let length = first.max(second).sqrt();
+    let narrow = first.min(second).sqrt().max(1.0);
+    let taps = (length / narrow).ceil().clamp(1.0, most.max(1.0));
+    let width = narrow.max(length / taps);
+    let line = (1.0 - width * width / (length * length).max(1.0e-20)).max(0.0).sqrt();
+    let longer = if first >= second { along } else { across };
+    TextureTaps { line: longer * line, taps, width }
+}
 
 /// Two neighbors, the `i`-th and the next, brought into the texture: indices of texels along an edge of `n`. Integers are divided
 /// once: that is slow.
@@ -51,20 +99,20 @@ impl SceneData {
         top * (1.0 - fy) + bottom * fy
     }
 
-    /// A slot at the corner's two sets of coordinates. `spread` is the logarithm to base 2 of the width of the pixel
-    /// in units of texture coordinates.
+    /// A slot at the corner's two sets of coordinates.
     #[must_use]
-    pub fn texture_sample(&self, slot: u32, uv: Vec4, spread: f32) -> Vec4 {
+    pub fn texture_sample(&self, slot: u32, uv: Vec4, footprint: &TextureFootprint) -> Vec4 {
         let RenderSlot { matrix, offset, uv_set, flags, image } = self.material_slot(slot);
-        let chosen = if uv_set == 1 { Vec2::new(uv.z, uv.w) } else { Vec2::new(uv.x, uv.y) };
-        let moved = Vec2::new(
-            matrix[0] * chosen.x + matrix[1] * chosen.y + offset[0],
-            matrix[2] * chosen.x + matrix[3] * chosen.y + offset[1],
-        );
+        let chosen = |both: Vec4| if uv_set == 1 { both.zw() } else { both.xy() };
+        let turned =
+            |uv: Vec2| Vec2::new(matrix[0] * uv.x + matrix[1] * uv.y, matrix[2] * uv.x + matrix[3] * uv.y);
+        let moved = turned(chosen(uv)) + Vec2::from(offset);
         // Far outside, a coordinate has no fraction left.
         let inside = moved.clamp(Vec2::splat(-4096.0), Vec2::splat(4096.0));
-        let texels = 0.5 * ops::log2(image[0] as f32 * image[1] as f32);
-        let lod = (spread + texels).clamp(0.0, (image[3] - 1) as f32);
+        let size = Vec2::new(image[0] as f32, image[1] as f32);
+        let [along, across] = [footprint.along, footprint.across].map(|axis| turned(chosen(axis)) * size);
+        let TextureTaps { line, taps, width } = texture_taps(along, across, footprint.taps);
+        let lod = ops::log2(width).clamp(0.0, (image[3] - 1) as f32);
         let (mut first, mut width, mut height) = (image[2], image[0] as i32, image[1] as i32);
         let level = lod as u32;
         for _ in 0..level {
@@ -73,12 +121,18 @@ impl SceneData {
             height = (height / 2).max(1);
         }
         let fraction = if level + 1 >= image[3] { 0.0 } else { lod - level as f32 };
-        let near = self.texture_level(first, width, height, inside, flags) * (1.0 - fraction);
+        let mean = |first: u32, width: i32, height: i32| {
+            let level = |tap: u32| {
+                let at = inside + line / size * ((tap as f32 + 0.5) / taps - 0.5);
+                self.texture_level(first, width, height, at, flags)
+            };
+            (0..taps as u32).map(level).sum::<Vec4>() / taps
+        };
+        let near = mean(first, width, height) * (1.0 - fraction);
         if fraction == 0.0 {
             return near;
         }
         let next = first + (width * height) as u32;
-        let far = self.texture_level(next, (width / 2).max(1), (height / 2).max(1), inside, flags);
-        near + far * fraction
+        near + mean(next, (width / 2).max(1), (height / 2).max(1)) * fraction
     }
 }

@@ -1,8 +1,7 @@
 //! Pixels by rays: of the picture, and of the environment capture. Twin of `shaders/wgsl/render/trace.wgsl`.
 //!
-//! Samples of a pixel that meet one surface are shaded once; where the two samples at opposite corners do, the others
-//! are taken to do so too. [`skylight`](crate::skylight) takes means of what neighboring pixels have found of the light of
-//! sky and surfaces.
+//! Samples of a pixel that meet one surface are shaded once. Light of sky and surfaces is kept apart for the surface of a pixel's first sample and for another one, if it
+//! shows more: [`skylight`](crate::skylight) takes means of what neighboring pixels have found of it.
 
 use downpour_math::packing::{
     packing_octahedral_decode, packing_octahedral_encode, packing_pack_half, packing_pack_snorm,
@@ -18,7 +17,6 @@ use crate::capture::{capture_direction, capture_sky, capture_suns};
 use crate::data::RenderFrame;
 use crate::path::{PathSlot, ViewPath, path_lattice_words, path_max};
 use crate::scene::SceneView;
-use crate::skylight::light_shown;
 use crate::temporal::PixelLight;
 
 /// Light that is denoised over neighboring pixels, packed. The same layout as `TraceSlot` in WGSL.
@@ -109,33 +107,32 @@ impl TraceSum {
         frame.wetness > 0 && own.min(other) > 0.0 && (own - other).abs() > SKYLIGHT_FILM * own.max(other)
     }
 
-    /// The sum with a sample. Where it is, is where the first sample is that has some.
-    fn trace_add(&self, sample: &PathSlot, frame: &RenderFrame) -> Self {
-        if sample.slack <= 0.0 {
-            return *self;
+    /// True if a sample shows the surface of the sum.
+    fn trace_same(&self, sample: &PathSlot, frame: &RenderFrame) -> bool {
+        let slot = &self.slot;
+        let off = slot.normal.dot(sample.position - slot.position).abs();
+        off < slot.slack
+            && (slot.roughness > 0.0) == (sample.roughness > 0.0)
+            && slot.normal.dot(sample.normal) > TRACE_SAME_NORMAL
+            && !self.trace_apart(sample, frame)
+    }
+
+    /// True if a sample shows the surface of the sum, or there is none yet.
+    fn trace_takes(&self, sample: &PathSlot, frame: &RenderFrame) -> bool {
+        self.weight <= 0.0 || self.trace_same(sample, frame)
+    }
+
+    /// The sum with a sample. Where it is, is where the first sample is.
+    fn trace_sum(&self, sample: &PathSlot) -> Self {
+        let mut next = *self;
+        if self.weight <= 0.0 {
+            next.slot = PathSlot { light: Vec3::ZERO, factor: Vec3::ZERO, ..*sample };
         }
-        if self.weight > 0.0 && self.trace_apart(sample, frame) {
-            // What a film shows is seen; what is dry beside it shows little.
-            let factor = self.slot.factor + sample.factor;
-            if sample.roughness < self.slot.roughness {
-                let weight = path_max(sample.factor).max(1.0e-6);
-                return Self { slot: PathSlot { light: sample.light * weight, factor, ..*sample }, weight };
-            }
-            return Self { slot: PathSlot { factor, ..self.slot }, weight: self.weight };
-        }
-        let first = if self.weight > 0.0 { self.slot } else { *sample };
-        // Light of a sample on another surface is not kept apart: it is taken to be the same.
-        let off = first.normal.dot(sample.position - first.position).abs();
-        let same = off < first.slack && first.normal.dot(sample.normal) > TRACE_SAME_NORMAL;
-        let weight = if same { path_max(sample.factor).max(1.0e-6) } else { 0.0 };
-        Self {
-            slot: PathSlot {
-                light: self.slot.light + sample.light * weight,
-                factor: self.slot.factor + sample.factor,
-                ..first
-            },
-            weight: self.weight + weight,
-        }
+        let weight = path_max(sample.factor).max(1.0e-6);
+        next.slot.light += sample.light * weight;
+        next.slot.factor += sample.factor;
+        next.weight += weight;
+        next
     }
 
     /// The mean, where `fraction` is one over the number of all samples.
@@ -149,12 +146,49 @@ impl TraceSum {
     }
 }
 
+/// What the samples of a pixel have found: on the surface that the first of them shows, and on another one.
+#[derive(Clone, Copy, Debug)]
+struct TracePair {
+    first: TraceSum,
+    other: TraceSum,
+    /// Sum of the light on what else there is, as it is seen.
+    rest: Vec3,
+}
+
+impl TracePair {
+    const NONE: Self = Self { first: TraceSum::NONE, other: TraceSum::NONE, rest: Vec3::ZERO };
+
+    /// With one more sample. Light on a third surface is seen as it is, with the noise of its rays.
+    fn trace_add(mut self, sample: &PathSlot, frame: &RenderFrame) -> Self {
+        if sample.slack <= 0.0 {
+            return self;
+        }
+        if self.first.trace_takes(sample, frame) {
+            self.first = self.first.trace_sum(sample);
+        } else if self.other.trace_takes(sample, frame) {
+            self.other = self.other.trace_sum(sample);
+        } else {
+            self.rest += sample.light * sample.factor;
+        }
+        self
+    }
+}
+
+/// Light that goes from a pixel to the filter: of the surface that its first sample shows, and of another one.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct TraceFound {
+    /// Of the first one.
+    pub first: TraceAmbient,
+    /// Of the other one.
+    pub other: TraceAmbient,
+}
+
 /// A pixel with some of its samples.
 struct TraceState {
     sum: Vec3,
     nearest: f32,
-    base: TraceSum,
-    mirror: TraceSum,
+    base: TracePair,
+    mirror: TracePair,
     last: ViewPath,
     count: u16,
     /// True if it needs no more samples.
@@ -167,8 +201,8 @@ impl TraceState {
         Self {
             sum: Vec3::ZERO,
             nearest: SCENE_FAR,
-            base: TraceSum::NONE,
-            mirror: TraceSum::NONE,
+            base: TracePair::NONE,
+            mirror: TracePair::NONE,
             last: ViewPath::NOTHING,
             count: 0,
             ended: false,
@@ -199,16 +233,10 @@ impl SceneView<'_> {
             return;
         }
         let n = self.frame.grid;
-        // First the opposite corners.
-        let index = match k {
-            0 => 0,
-            1 => n * n - 1,
-            _ => k - 1,
-        };
-        let dx = ((index % n) as f32 + 0.5) / n as f32;
-        let dy = ((index / n) as f32 + 0.5) / n as f32;
+        let dx = ((k % n) as f32 + 0.5) / n as f32;
+        let dy = ((k / n) as f32 + 0.5) / n as f32;
         let direction = self.trace_direction(x as f32 + dx, y as f32 + dy);
-        let random = path_lattice_words(self.frame.camera.seed, x, y, index);
+        let random = path_lattice_words(self.frame.camera.seed, x, y, k);
         let camera = &self.frame.camera;
         let spared = !self.frame.pixels_that_look().spacing_looks(x, y);
         let path = self.path_trace(camera.eye, direction, camera.pixel_angle, random, &state.last, spared);
@@ -218,10 +246,12 @@ impl SceneView<'_> {
         state.mirror = state.mirror.trace_add(&path.mirror, self.frame);
         state.nearest = state.nearest.min(path.distance);
         state.count += 1;
-        let both_sky = path.distance >= SCENE_FAR && state.last.distance >= SCENE_FAR;
-        let same = k == 1 && (path.again || both_sky);
         state.last = path;
-        if same || k + 1 >= n * n {
+        if k > 0 && !path.again {
+            // A pixel of more than one surface is worth the rays of all its samples.
+            state.last.plain = false;
+        }
+        if k + 1 >= n * n {
             state.ended = true;
             if !is_picture {
                 let mean = state.sum * (1.0 / f32::from(state.count));
@@ -233,19 +263,23 @@ impl SceneView<'_> {
 
     /// A pixel that needs no more samples: mean radiance, and the distance of what stands nearest in it. In the picture the light
     /// of sky and surfaces on the first surface is left out; it is the second of the two.
-    fn trace_seen(&self, state: &TraceState) -> (Vec4, TraceAmbient) {
+    fn trace_seen(&self, state: &TraceState) -> (Vec4, TraceFound) {
         let fraction = 1.0 / f32::from(state.count);
-        let mut ambient = TraceAmbient::default();
+        let mut found = TraceFound::default();
+        let mut seen = state.sum;
         if self.frame.projection == SCENE_PICTURE {
+            seen += state.base.rest + state.mirror.rest;
             let mean = |sum: &TraceSum| sum.trace_mean(fraction, self.frame.camera.eye);
-            ambient = TraceAmbient { base: mean(&state.base), mirror: mean(&state.mirror) };
+            let (base, mirror) = (&state.base, &state.mirror);
+            found.first = TraceAmbient { base: mean(&base.first), mirror: mean(&mirror.first) };
+            found.other = TraceAmbient { base: mean(&base.other), mirror: mean(&mirror.other) };
         }
-        ((state.sum * fraction).extend(state.nearest), ambient)
+        ((seen * fraction).extend(state.nearest), found)
     }
 
     /// A pixel with all its samples: radiance and distance, and what light of sky and surfaces goes to the filter.
     #[must_use]
-    pub fn trace_pixel(&self, x: u32, y: u32) -> (Vec4, TraceAmbient) {
+    pub fn trace_pixel(&self, x: u32, y: u32) -> (Vec4, TraceFound) {
         let mut state = TraceState::trace_begin();
         for k in 0.. {
             self.trace_sample(&mut state, x, y, k);
@@ -266,18 +300,18 @@ impl SceneView<'_> {
     #[must_use]
     pub fn picture_and_light(&self) -> (Vec<[f32; 4]>, PixelLight) {
         let width = self.frame.camera.width;
-        let (mut picture, ambient): (Vec<[f32; 4]>, Vec<TraceAmbient>) = (0..self.frame.camera.height)
+        let (mut picture, found): (Vec<[f32; 4]>, Vec<TraceFound>) = (0..self.frame.camera.height)
             .into_par_iter()
             .flat_map_iter(|y| {
                 (0..width).map(move |x| {
-                    let (pixel, ambient) = self.trace_pixel(x, y);
-                    (pixel.to_array(), ambient)
+                    let (pixel, found) = self.trace_pixel(x, y);
+                    (pixel.to_array(), found)
                 })
             })
             .unzip();
-        let means = self.skylight(&ambient);
-        let eye = self.frame.camera.eye;
-        let light = ambient.par_iter().zip(&means).map(|(pixel, means)| light_shown(pixel, means, eye));
+        let (ambient, others): (Vec<_>, Vec<_>) =
+            found.into_par_iter().map(|found| (found.first, found.other)).unzip();
+        let (means, light) = self.skylight(&ambient, &others);
         picture.par_iter_mut().zip(light).for_each(|(pixel, light)| add_light(pixel, light));
         (picture, PixelLight { ambient, means })
     }

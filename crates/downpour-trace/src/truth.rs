@@ -34,7 +34,7 @@ impl SceneView<'_> {
                 let turned = -motion.turning.cross(direction);
                 return SurfaceTruth { wetness: 0.0, water_depth: 0.0, motion: self.pace(direction, turned) };
             };
-            let found = self.data.surface_at(&hit, camera.eye, direction, camera.pixel_angle);
+            let found = self.data.surface_at(&hit, camera.eye, direction, camera.pixel_angle, 1.0);
             let wetness = if self.frame.wetness > 0 { self.wet_exposure(&found, &load) } else { 0.0 };
             let water_depth =
                 self.puddle_water_find(found.position, found.facet.y).map_or(0.0, |water| water.depth);

@@ -47,7 +47,7 @@ shared_constants! {
         /// Specular weight from which rays are traced for it.
         PATH_MIN_GLOSS: f32 = 0.005;
         /// Gloss and roughness from which, and below which, each sample of a pixel sees for itself what is mirrored.
-        PATH_PLAIN_GLOSS: f32 = 0.1;
+        PATH_PLAIN_GLOSS: f32 = 0.03;
         /// See [`PATH_PLAIN_GLOSS`].
         PATH_CURVED: f32 = 0.3;
         /// Part of all rays that one is of a gloss of which no means over neighbors are taken: there are some per pixel.

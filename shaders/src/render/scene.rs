@@ -54,6 +54,10 @@ shared_constants! {
         SCENE_DOUBLE_SIDED: u32 = 4;
         /// Alpha below which a blended material is a hole.
         SURFACE_OPEN: f32 = 0.002;
+        /// Least squared sine of the angle between a ray and a normal at which the ray has a direction along the surface.
+        SURFACE_OBLIQUE: f32 = 1.0e-6;
+        /// Minimum cosine between a ray and a normal for the length of a pixel's image on the surface.
+        SURFACE_GRAZING: f32 = 0.05;
         /// Material flag: the base color is what is seen, without light.
         SCENE_UNLIT: u32 = 8;
         /// Material flag: shining glass for which a lamp stands that shines in all directions.
@@ -64,6 +68,9 @@ shared_constants! {
         SURFACE_DENSE: f32 = 0.45;
         /// Roughness from which a surface is porous all over.
         SURFACE_POROUS: f32 = 0.8;
+        /// Samples of a texture along the longer side of a pixel's image on a surface, at most: surfaces seen at a grazing angle are blurred
+        /// from 7 degrees on.
+        TEXTURE_TAPS: f32 = 8.0;
         /// Texture flag: texels are square roots of linear colors.
         SCENE_ROOTED: u32 = 1;
         /// Texture flag: repeats in u.
@@ -147,6 +154,8 @@ shared_constants! {
         TRACE_SAME_NORMAL: f32 = 0.9;
         /// Weight of light that no ray has looked for, beside that of pixels whose rays did.
         SKYLIGHT_GUESSED: f32 = 0.00000001;
+        /// Weight of what rays have found on the second surface of a pixel, beside the mean of a pixel that shows that surface first.
+        SKYLIGHT_OWN: f32 = 0.0625;
         /// Weight of what is found on another surface, for a pixel whose rays have not looked.
         SKYLIGHT_LOOSE: f32 = 0.001;
         /// Roughness of a lobe within which that counts most.
@@ -255,7 +264,7 @@ pub static TRACE_SEEN_KERNEL: Kernel =
     Kernel { entry: "main_trace_seen", module: &TRACE, workgroup: [8, 8, 1] };
 
 /// Bytes of a pixel that `main_trace_sample` keeps from sample to sample (`TraceState`).
-pub const TRACE_STATE_BYTES: u64 = 384;
+pub const TRACE_STATE_BYTES: u64 = 576;
 
 /// The sky's light over neighboring pixels. Twin: `downpour_trace::skylight`.
 pub static SKYLIGHT: Module = Module {

@@ -534,7 +534,21 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     light = path_accumulated(light, ray, sky_cone(ray.along, ray.width), of_shown);
                     break;
                 }
-                var found = surface_at(hit, from_position, ray.along, ray.width);
+                if turn == 0u {
+                    let facet = surface_facet(hit, towards);
+                    let position = start + towards * hit.distance;
+                    if SCENE_WET && water.puddle == PUDDLE_WATER_NONE {
+                        water = puddle_water_find(position, facet.y);
+                        of_water = water.puddle != PUDDLE_WATER_NONE;
+                    }
+                    let material = render_corners[hit.triangle * 3u].material;
+                    if layer == 0u && !of_water && path_same_surface(last, material, facet, position, hit.distance) {
+                        var same = last;
+                        same.again = 1u;
+                        return same;
+                    }
+                }
+                var found = surface_at(hit, from_position, ray.along, ray.width, select(1.0, TEXTURE_TAPS, turn == 0u));
                 var wetness = 0.0;
                 if WET_SURFACES && bounce == 0u && !under {
                     wetness = wet_exposure(found, wet);
@@ -559,10 +573,6 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                 if turn == 0u {
                     let material = render_corners[hit.triangle * 3u].material;
                     var distance = hit.distance;
-                    if SCENE_WET && water.puddle == PUDDLE_WATER_NONE {
-                        water = puddle_water_find(found.position, found.facet.y);
-                        of_water = water.puddle != PUDDLE_WATER_NONE;
-                    }
                     if SCENE_WET && of_water {
                         // Back along the ray to where it came through the surface.
                         distance = max(hit.distance - water.rise / max(-towards.y, 0.01), near);
@@ -570,11 +580,6 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                         let footprint = cone * distance / sqrt(max(-towards.y, 0.02));
                         ripple = puddle_water_ripple(water.puddle, position, footprint, water.depth, water.open);
                         found = path_water_surface(start, towards, distance, ripple);
-                    } else if layer == 0u
-                        && path_same_surface(last, material, found.facet, found.position, hit.distance) {
-                        var same = last;
-                        same.again = 1u;
-                        return same;
                     }
                     if SCENE_WET && under {
                         let rise = max(level - found.position.y, 0.0);

@@ -1,6 +1,6 @@
 // Light of sky and surfaces on surfaces: means over what the pixels around a pixel have found on the same surface, times what
-// the surface makes of it. The kernel makes one pass: means over windows, then wider means of them; the last adds them to the
-// picture.
+// the surface makes of it. The kernel makes one pass: means over windows, then wider means of them, the last of which it adds to the
+// picture; then what these are on the other surfaces of a pixel.
 // Twin: downpour_trace::skylight, where the method is described.
 
 @group(0) @binding(1) var<storage, read> skylight_ambient: array<TraceAmbient>;
@@ -8,6 +8,7 @@
 @group(0) @binding(2) var<storage, read> skylight_before: array<vec4f>;
 @group(0) @binding(3) var<storage, read_write> skylight_means: array<vec4f>;
 @group(0) @binding(4) var<storage, read_write> skylight_picture: array<vec4f>;
+@group(0) @binding(9) var<storage, read> skylight_others: array<TraceAmbient>;
 
 // A slot of a pixel, unpacked.
 struct SkylightSlot {
@@ -168,6 +169,43 @@ fn skylight_wide(x: u32, y: u32, slot: u32, step: u32) -> vec4f {
     return vec4f(sum / weight, variance / (weight * weight));
 }
 
+// A slot of the other surface of a pixel.
+fn skylight_packed(pixel: u32, slot: u32) -> TraceSlot {
+    if slot > 0u {
+        return skylight_others[pixel].mirror;
+    }
+    return skylight_others[pixel].base;
+}
+
+// Light on the other surface of a pixel, times what that makes of it: the mean of the means of the pixels around it that show that surface
+// first; what has been found of it where it is the other one counts little beside them.
+fn skylight_other(x: u32, y: u32, slot: u32) -> vec3f {
+    let packed = skylight_packed(y * render_frame.camera.width + x, slot);
+    let own = skylight_unpack(packed);
+    if own.slack <= 0.0 {
+        return vec3f(0.0);
+    }
+    var weight = 0.0;
+    var sum = vec3f(0.0);
+    let right = min(x + SKYLIGHT_RADIUS, render_frame.camera.width - 1u);
+    let bottom = min(y + SKYLIGHT_RADIUS, render_frame.camera.height - 1u);
+    for (var row = spacing_first(y, 1u, SKYLIGHT_RADIUS, 0u); row <= bottom; row += 1u) {
+        for (var column = spacing_first(x, 1u, SKYLIGHT_RADIUS, 0u); column <= right; column += 1u) {
+            let other = row * render_frame.camera.width + column;
+            let hat = skylight_hat(x, column) * skylight_hat(y, row);
+            let counts = hat * skylight_near(own, skylight_slot(other, slot));
+            let its = skylight_unpack(skylight_packed(other, slot));
+            var few = hat * SKYLIGHT_OWN * its.weight;
+            if row != y || column != x {
+                few *= skylight_near(own, its);
+            }
+            sum += skylight_before[2u * other + slot].xyz * counts + its.light * few;
+            weight += counts + few;
+        }
+    }
+    return trace_unpack(packed).factor * (sum / weight);
+}
+
 @compute @workgroup_size(8, 8, 1)
 fn main_skylight(@builtin(global_invocation_id) id: vec3u) {
     let y = id.y + render_frame.first_row;
@@ -176,6 +214,10 @@ fn main_skylight(@builtin(global_invocation_id) id: vec3u) {
     }
     let index = y * render_frame.camera.width + id.x;
     let step = render_frame.turn;
+    if step > SKYLIGHT_PASSES {
+        skylight_picture[index] += vec4f(skylight_other(id.x, y, 0u) + skylight_other(id.x, y, 1u), 0.0);
+        return;
+    }
     for (var slot = 0u; slot < 2u; slot += 1u) {
         var mean = vec4f(0.0);
         if step == 0u {

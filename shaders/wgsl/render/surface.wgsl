@@ -32,17 +32,18 @@ struct Surface {
 }
 
 // A texture of a material's row, or white.
-fn surface_texture(row: u32, uv: vec4f, spread: f32) -> vec4f {
+fn surface_texture(row: u32, uv: vec4f, footprint: TextureFootprint) -> vec4f {
     if row == SCENE_NONE {
         return vec4f(1.0);
     }
-    return texture_sample(row, uv, spread);
+    return texture_sample(row, uv, footprint);
 }
 
 // Alpha at a hit.
 fn surface_alpha(material: RenderMaterial, hit: SurfaceHit) -> f32 {
+    let point = TextureFootprint(vec4f(0.0), vec4f(0.0), 1.0);
     return material.base.a
-        * surface_texture(material.maps.x, surface_uv(hit), -20.0).a * surface_color(hit).a;
+        * surface_texture(material.maps.x, surface_uv(hit), point).a * surface_color(hit).a;
 }
 
 // True if there is a hole at a hit.
@@ -100,22 +101,42 @@ fn surface_color(hit: SurfaceHit) -> vec4f {
         + render_corners[first + 2u].color * hit.v;
 }
 
-// Logarithm to base 2 of the width of a ray's cone at a hit, in units of texture coordinates: the mean scale of
-// coordinates over the triangle, times the cone's width, over the cosine at the surface.
-fn surface_spread(hit: SurfaceHit, geometric: vec3f, direction: vec3f, width: f32) -> f32 {
+// Where a ray's cone, of a width at the hit, meets the triangle: as wide across the ray, and in the direction in which the ray goes over
+// the triangle longer by the cosine between ray and normal.
+fn surface_footprint(hit: SurfaceHit, geometric: vec3f, direction: vec3f, width: f32, taps: f32) -> TextureFootprint {
     let first = hit.triangle * 3u;
-    let a = render_corners[first].uv.xy;
-    let b = render_corners[first + 1u].uv.xy - a;
-    let c = render_corners[first + 2u].uv.xy - a;
-    let area_uv = abs(b.x * c.y - b.y * c.x);
-    let area = sqrt(dot(geometric, geometric));
-    let cosine = max(abs(dot(geometric, direction)) / max(area, 1.0e-20), 0.05);
-    return 0.5 * log2(max(area_uv, 1.0e-20) / max(area, 1.0e-20)) + log2(max(width, 1.0e-12) / cosine);
+    let a = render_corners[first].uv;
+    let b = render_corners[first + 1u].uv - a;
+    let c = render_corners[first + 2u].uv - a;
+    let edge_1 = bvh_triangles[hit.triangle].edge_1;
+    let edge_2 = bvh_triangles[hit.triangle].edge_2;
+    let normal = geometric / max(sqrt(dot(geometric, geometric)), 1.0e-20);
+    let cosine = dot(normal, direction);
+    let over = direction - normal * cosine;
+    let is_oblique = dot(over, over) > SURFACE_OBLIQUE;
+    let chosen = select(edge_1, over, is_oblique);
+    let along = chosen / max(sqrt(dot(chosen, chosen)), 1.0e-20);
+    let across = cross(normal, along);
+    // What the edges are to be multiplied by for one meter in a direction.
+    let inverse = width / max(dot(geometric, geometric), 1.0e-30);
+    let longer = inverse / max(abs(cosine), SURFACE_GRAZING);
+    return TextureFootprint(
+        (b * dot(cross(along, edge_2), geometric) + c * dot(cross(edge_1, along), geometric)) * longer,
+        (b * dot(cross(across, edge_2), geometric) + c * dot(cross(edge_1, across), geometric)) * inverse,
+        taps,
+    );
 }
 
 // The cross product of the edges of the triangle that was hit: its normal, as long as twice its area.
 fn surface_edges(hit: SurfaceHit) -> vec3f {
     return cross(bvh_triangles[hit.triangle].edge_1, bvh_triangles[hit.triangle].edge_2);
+}
+
+// The normal of the triangle that was hit, facing the viewer.
+fn surface_facet(hit: SurfaceHit, direction: vec3f) -> vec3f {
+    let geometric = surface_edges(hit);
+    let facing = select(1.0, -1.0, dot(geometric, direction) > 0.0);
+    return geometric * (facing / max(sqrt(dot(geometric, geometric)), 1.0e-20));
 }
 
 // Rate at which the corners' normals turn over the triangle that was hit, 1/m.
@@ -144,8 +165,8 @@ fn surface_porosity(own: f32, flags: u32, roughness: f32, metallic: f32) -> f32 
     return x * x * (3.0 - 2.0 * x) * (1.0 - metallic);
 }
 
-// Everything that shading needs at a hit.
-fn surface_at(hit: SurfaceHit, origin: vec3f, direction: vec3f, cone: f32) -> Surface {
+// Everything that shading needs at a hit of a ray whose cone is as wide at distance 1. `taps`: see TextureFootprint.
+fn surface_at(hit: SurfaceHit, origin: vec3f, direction: vec3f, cone: f32, taps: f32) -> Surface {
     let first = hit.triangle * 3u;
     let w = 1.0 - hit.u - hit.v;
     let corner = render_corners[first];
@@ -153,10 +174,10 @@ fn surface_at(hit: SurfaceHit, origin: vec3f, direction: vec3f, cone: f32) -> Su
     let third = render_corners[first + 2u];
     let geometric = surface_edges(hit);
     let facing = select(1.0, -1.0, dot(geometric, direction) > 0.0);
-    let facet = geometric * (facing / max(sqrt(dot(geometric, geometric)), 1.0e-20));
+    let facet = surface_facet(hit, direction);
 
     let uv = surface_uv(hit);
-    let spread = surface_spread(hit, geometric, direction, cone * hit.distance);
+    let footprint = surface_footprint(hit, geometric, direction, cone * hit.distance, taps);
     let material = material_load(corner.material);
     let flags = material.flags;
     let maps = material.maps;
@@ -166,7 +187,7 @@ fn surface_at(hit: SurfaceHit, origin: vec3f, direction: vec3f, cone: f32) -> Su
     var rows = array<u32, 6>(maps.x, maps.y, maps.z, maps.w, more.x, more.y);
     var texels: array<vec4f, 6>;
     for (var k = 0u; k < 6u; k += 1u) {
-        texels[k] = surface_texture(rows[k], uv, spread);
+        texels[k] = surface_texture(rows[k], uv, footprint);
     }
     let base = material.base * texels[0] * surface_color(hit);
     let rough = texels[1];

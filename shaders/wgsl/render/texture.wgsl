@@ -3,6 +3,16 @@
 // and flags; width, height, first texel and number of levels. Levels follow each other, each half as large.
 // Twin: downpour_trace::texture.
 
+// The place where a ray's cone meets a surface, an ellipse, in both sets of texture coordinates.
+struct TextureFootprint {
+    // Its longer diameter on the surface.
+    along: vec4f,
+    // Its shorter diameter.
+    across: vec4f,
+    // Samples along the longer one, at most.
+    taps: f32,
+}
+
 // Two neighbors, the i-th and the next, brought into the texture: indices of texels along an edge of n. Integers are divided
 // once: that is slow.
 fn texture_wrap(i: i32, n: i32, repeats: bool, mirrors: bool) -> vec2i {
@@ -45,9 +55,22 @@ fn texture_level(first: u32, width: i32, height: i32, uv: vec2f, flags: u32) -> 
     return top * (1.0 - fy) + bottom * fy;
 }
 
-// A slot at the corner's two sets of coordinates. `spread` is the logarithm to base 2 of the width of the pixel in
-// units of texture coordinates.
-fn texture_sample(slot: u32, uv: vec4f, spread: f32) -> vec4f {
+// Samples in place of an ellipse with two diameters in texels: the line on which they lie, their number, and the width of each, at least 1. They
+// are as far apart as gives the line and the widths together the ellipse's extent, so that nothing jumps where a sample is added.
+fn texture_taps(along: vec2f, across: vec2f, most: f32) -> vec4f {
+    let first = dot(along, along);
+    let second = dot(across, across);
+    let length = sqrt(max(first, second));
+    let narrow = max(sqrt(min(first, second)), 1.0);
+    let taps = clamp(ceil(length / narrow), 1.0, max(most, 1.0));
+    let width = max(narrow, length / taps);
+    let line = sqrt(max(1.0 - width * width / max(length * length, 1.0e-20), 0.0));
+    let longer = select(across, along, first >= second);
+    return vec4f(longer * line, taps, width);
+}
+
+// A slot at the corner's two sets of coordinates.
+fn texture_sample(slot: u32, uv: vec4f, footprint: TextureFootprint) -> vec4f {
     let found = material_slot(slot);
     let matrix = found.matrix;
     let image = found.image;
@@ -58,8 +81,15 @@ fn texture_sample(slot: u32, uv: vec4f, spread: f32) -> vec4f {
     );
     // Far outside, a coordinate has no fraction left.
     let inside = clamp(moved, vec2f(-4096.0), vec2f(4096.0));
-    let texels = 0.5 * log2(f32(image.x) * f32(image.y));
-    let lod = clamp(spread + texels, 0.0, f32(image.w - 1u));
+    let size = vec2f(f32(image.x), f32(image.y));
+    let along = select(footprint.along.xy, footprint.along.zw, found.uv_set == 1u);
+    let across = select(footprint.across.xy, footprint.across.zw, found.uv_set == 1u);
+    let taps = texture_taps(
+        vec2f(matrix.x * along.x + matrix.y * along.y, matrix.z * along.x + matrix.w * along.y) * size,
+        vec2f(matrix.x * across.x + matrix.y * across.y, matrix.z * across.x + matrix.w * across.y) * size,
+        footprint.taps,
+    );
+    let lod = clamp(log2(taps.w), 0.0, f32(image.w - 1u));
     var first = image.z;
     var width = i32(image.x);
     var height = i32(image.y);
@@ -70,15 +100,18 @@ fn texture_sample(slot: u32, uv: vec4f, spread: f32) -> vec4f {
         height = max(height / 2, 1);
     }
     let fraction = select(lod - f32(level), 0.0, level + 1u >= image.w);
-    var weight = 1.0 - fraction;
+    var weight = (1.0 - fraction) / taps.z;
     var sum = vec4f(0.0);
     // Two levels, or one.
     for (var k = 0u; k < 2u && weight > 0.0; k += 1u) {
-        sum += texture_level(first, width, height, inside, found.flags) * weight;
+        for (var tap = 0.5; tap < taps.z; tap += 1.0) {
+            let at = inside + taps.xy / size * (tap / taps.z - 0.5);
+            sum += texture_level(first, width, height, at, found.flags) * weight;
+        }
         first += u32(width * height);
         width = max(width / 2, 1);
         height = max(height / 2, 1);
-        weight = select(0.0, fraction, k == 0u);
+        weight = select(0.0, fraction / taps.z, k == 0u);
     }
     return sum;
 }

@@ -1,12 +1,13 @@
 // Pixels by rays: of the picture, and of the environment capture. Both are one kernel, since a software driver
 // compiles the walk through the scene anew for each.
-// Samples of a pixel that meet one surface are shaded once; where the two samples at opposite corners do, the others are
-// taken to do so too. Light of sky and surfaces on the first surface leaves the picture's kernel as what one pixel has found
-// of it; skylight.wgsl takes means over neighbors.
+// Samples of a pixel that meet one surface are shaded once. Light of sky and surfaces on the surfaces of a pixel leaves the picture's kernel as what one pixel has found
+// of it, on the surface of its first sample and on another one if it shows more; skylight.wgsl takes means over neighbors.
 // Twin: downpour_trace::trace.
 
 @group(0) @binding(7) var<storage, read_write> trace_picture: array<vec4f>;
 @group(0) @binding(8) var<storage, read_write> trace_ambient: array<TraceAmbient>;
+// Of second surfaces in the pixels.
+@group(0) @binding(10) var<storage, read_write> trace_others: array<TraceAmbient>;
 
 // Samples of the pixels of a band of rows so far: main_trace_sample.
 @group(0) @binding(9) var<storage, read_write> trace_states: array<TraceState>;
@@ -39,12 +40,20 @@ struct TraceSum {
     weight: f32,
 }
 
+// What the samples of a pixel have found: on the surface that the first of them shows, and on another one.
+struct TracePair {
+    first: TraceSum,
+    other: TraceSum,
+    // Sum of the light on what else there is, as it is seen.
+    rest: vec3f,
+}
+
 // A pixel with some of its samples.
 struct TraceState {
     sum: vec3f,
     nearest: f32,
-    base: TraceSum,
-    mirror: TraceSum,
+    base: TracePair,
+    mirror: TracePair,
     last: ViewPath,
     count: u32,
     // 1: it needs no more samples.
@@ -92,35 +101,46 @@ fn trace_apart(sum: TraceSum, sample: PathSlot) -> bool {
     return abs(sum.slot.roughness - sample.roughness) > SKYLIGHT_FILM * max(sum.slot.roughness, sample.roughness);
 }
 
-// The sum with a sample. Where it is, is where the first sample is that has some.
-fn trace_add(sum: TraceSum, sample: PathSlot) -> TraceSum {
-    if sample.slack <= 0.0 {
-        return sum;
-    }
+// True if a sample shows the surface of the sum.
+fn trace_same(sum: TraceSum, sample: PathSlot) -> bool {
+    let off = abs(dot(sum.slot.normal, sample.position - sum.slot.position));
+    let alike = dot(sum.slot.normal, sample.normal) > TRACE_SAME_NORMAL && (sum.slot.roughness > 0.0) == (sample.roughness > 0.0);
+    return off < sum.slot.slack && alike && !trace_apart(sum, sample);
+}
+
+// True if a sample shows the surface of the sum, or there is none yet.
+fn trace_takes(sum: TraceSum, sample: PathSlot) -> bool {
+    return sum.weight <= 0.0 || trace_same(sum, sample);
+}
+
+// The sum with a sample. Where it is, is where the first sample is.
+fn trace_sum(sum: TraceSum, sample: PathSlot) -> TraceSum {
     var next = sum;
     if sum.weight <= 0.0 {
-        let before = sum.slot;
         next.slot = sample;
-        next.slot.light = before.light;
-        next.slot.factor = before.factor;
-    } else if trace_apart(sum, sample) {
-        // What a film shows is seen; what is dry beside it shows little.
-        next.slot.factor += sample.factor;
-        if sample.roughness < sum.slot.roughness {
-            next.weight = max(path_max(sample.factor), 1.0e-6);
-            next.slot = sample;
-            next.slot.light = sample.light * next.weight;
-            next.slot.factor = sum.slot.factor + sample.factor;
-        }
-        return next;
+        next.slot.light = vec3f(0.0);
+        next.slot.factor = vec3f(0.0);
     }
-    // Light of a sample on another surface is not kept apart: it is taken to be the same.
-    let off = abs(dot(next.slot.normal, sample.position - next.slot.position));
-    let same = off < next.slot.slack && dot(next.slot.normal, sample.normal) > TRACE_SAME_NORMAL;
-    let weight = select(0.0, max(path_max(sample.factor), 1.0e-6), same);
+    let weight = max(path_max(sample.factor), 1.0e-6);
     next.slot.light += sample.light * weight;
     next.slot.factor += sample.factor;
     next.weight += weight;
+    return next;
+}
+
+// What samples have found, with one more. Light on a third surface is seen as it is, with the noise of its rays.
+fn trace_add(pair: TracePair, sample: PathSlot) -> TracePair {
+    var next = pair;
+    if sample.slack <= 0.0 {
+        return next;
+    }
+    if trace_takes(pair.first, sample) {
+        next.first = trace_sum(pair.first, sample);
+    } else if trace_takes(pair.other, sample) {
+        next.other = trace_sum(pair.other, sample);
+    } else {
+        next.rest += sample.light * sample.factor;
+    }
     return next;
 }
 
@@ -167,12 +187,10 @@ fn trace_sample(state: ptr<function, TraceState>, x: u32, y: u32, k: u32) {
         return;
     }
     let n = render_frame.grid;
-    // First the opposite corners.
-    let index = select(select(k - 1u, n * n - 1u, k == 1u), 0u, k == 0u);
-    let dx = (f32(index % n) + 0.5) / f32(n);
-    let dy = (f32(index / n) + 0.5) / f32(n);
+    let dx = (f32(k % n) + 0.5) / f32(n);
+    let dy = (f32(k / n) + 0.5) / f32(n);
     let direction = trace_direction(f32(x) + dx, f32(y) + dy);
-    let random = path_lattice_words(x, y, index);
+    let random = path_lattice_words(x, y, k);
     let last = (*state).last;
     let spared = !spacing_looks(x, y);
     let path = path_trace(render_frame.camera.eye, direction, render_frame.camera.pixel_angle, random, last, spared);
@@ -185,10 +203,12 @@ fn trace_sample(state: ptr<function, TraceState>, x: u32, y: u32, k: u32) {
     (*state).mirror = trace_add((*state).mirror, path.mirror);
     (*state).nearest = min((*state).nearest, path.distance);
     (*state).count += 1u;
-    let both_sky = path.distance >= SCENE_FAR && last.distance >= SCENE_FAR;
-    let same = k == 1u && (path.again > 0u || both_sky);
     (*state).last = path;
-    if same || k + 1u >= n * n {
+    if k > 0u && path.again == 0u {
+        // A pixel of more than one surface is worth the rays of all its samples.
+        (*state).last.plain = 0u;
+    }
+    if k + 1u >= n * n {
         (*state).ended = 1u;
         if render_frame.projection != SCENE_PICTURE {
             (*state).sum = trace_captured((*state).sum * (1.0 / f32((*state).count)), (*state).nearest, x, y);
@@ -201,11 +221,14 @@ fn trace_sample(state: ptr<function, TraceState>, x: u32, y: u32, k: u32) {
 // sky and surfaces on the first surface is left out and goes to the filter.
 fn trace_seen(state: TraceState, x: u32, y: u32) -> vec4f {
     let fraction = 1.0 / f32(state.count);
+    var seen = state.sum;
     if render_frame.projection == SCENE_PICTURE {
-        let ambient = TraceAmbient(trace_mean(state.base, fraction), trace_mean(state.mirror, fraction));
-        trace_ambient[y * render_frame.camera.width + x] = ambient;
+        seen += state.base.rest + state.mirror.rest;
+        let pixel = y * render_frame.camera.width + x;
+        trace_ambient[pixel] = TraceAmbient(trace_mean(state.base.first, fraction), trace_mean(state.mirror.first, fraction));
+        trace_others[pixel] = TraceAmbient(trace_mean(state.base.other, fraction), trace_mean(state.mirror.other, fraction));
     }
-    return vec4f(state.sum * fraction, state.nearest);
+    return vec4f(seen * fraction, state.nearest);
 }
 
 // A pixel with all its samples.

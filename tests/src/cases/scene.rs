@@ -28,8 +28,8 @@ use downpour_trace::scatter::{
 use downpour_trace::scene::{SceneView, scene_alpha, scene_disk, scene_softness};
 use downpour_trace::sky_light::SkyLight;
 use downpour_trace::skylight::{skylight_film, skylight_hat, skylight_lobe};
-use downpour_trace::texture::texture_wrap;
-use glam::{Affine3A, Vec3};
+use downpour_trace::texture::{texture_taps, texture_wrap};
+use glam::{Affine3A, Vec2, Vec3};
 
 use crate::Domain::{AnyWord, Below, Fixed, Made, OneOf, Uniform, Unit3};
 use crate::compare::{Cpu, Gpu as FromGpu};
@@ -103,6 +103,23 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             |a| {
                 let (i, n) = (a.u32() as i32, a.u32() as i32);
                 texture_wrap(i, n, a.u32() != 0, a.u32() != 0).map(|i| i as u32).words()
+            },
+        ),
+        FunctionCase::new(
+            "texture_taps",
+            &TEXTURE,
+            &[
+                Uniform(-40.0, 40.0),
+                Uniform(-40.0, 40.0),
+                Uniform(-6.0, 6.0),
+                Uniform(-6.0, 6.0),
+                OneOf(&[0.0, 1.0, 2.0, 8.0]),
+            ],
+            Tol::relative(2.0e-5, 1.0e-5, "square roots and quotients (2.5 ulp each); 1 - x of near numbers")
+                .with_outliers(2.0e-3),
+            |a| {
+                let found = texture_taps(Vec2::from(a.f32s()), Vec2::from(a.f32s()), a.f32());
+                [found.line.x, found.line.y, found.taps, found.width].words()
             },
         ),
         FunctionCase::new("brdf_masking", &BRDF, &[alpha, cosine], FORMULA, |a| {

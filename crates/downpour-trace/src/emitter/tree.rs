@@ -1,7 +1,6 @@
 //! The tree over the triangles that shine.
 
 use downpour_bvh::Hit;
-use downpour_math::ops;
 use downpour_render::light::light_weight;
 use downpour_shaders::render::scene::{EMITTER_WORDS, SCENE_BLENDED, SCENE_MASKED};
 use glam::{Vec2, Vec3};
@@ -9,6 +8,7 @@ use rayon::prelude::*;
 
 use super::EmitterNode;
 use crate::data::SceneData;
+use crate::texture::TextureFootprint;
 
 /// Places of a triangle where its emission is looked up, barycentric.
 const PLACES: [[f32; 2]; 7] =
@@ -31,18 +31,18 @@ struct Emitter {
 /// Mean emission over a triangle, and its area, m^2.
 pub(crate) fn mean_emission(data: &SceneData, triangle: u32) -> (Vec3, f32) {
     let hit = |[u, v]: [f32; 2]| Hit { distance: 0.0, triangle, u, v };
-    let spread = spread(data, triangle);
-    let sum: Vec3 = PLACES.iter().map(|&place| data.surface_emission(&hit(place), spread)).sum();
+    let footprint = TextureFootprint::round(third_width(data, triangle));
+    let sum: Vec3 = PLACES.iter().map(|&place| data.surface_emission(&hit(place), &footprint)).sum();
     let edges = data.surface_edges(&hit(PLACES[0]));
     (sum / PLACES.len() as f32, 0.5 * edges.length())
 }
 
-/// Logarithm to base 2 of a third of the width of a triangle in units of texture coordinates.
-fn spread(data: &SceneData, triangle: u32) -> f32 {
+/// About a third of the width of a triangle in units of texture coordinates.
+fn third_width(data: &SceneData, triangle: u32) -> f32 {
     let first = triangle as usize * 3;
     let [a, b, c] =
         [0, 1, 2].map(|k| Vec2::new(data.corners[first + k].uv[0], data.corners[first + k].uv[1]));
-    0.5 * ops::log2((b - a).perp_dot(c - a).abs().max(1.0e-20)) - 1.5
+    (0.125 * (b - a).perp_dot(c - a).abs()).sqrt()
 }
 
 /// The words of the tree over `triangles` of a scene; empty if none of them shines.

@@ -49,12 +49,15 @@ impl ScenePipeline {
         let of_map = environment_frame(frame, &rain.environment);
         // An environment map has no filter: nothing is written there.
         let nothing = buffers.storage("no light of the sky", &[TraceAmbient::default()])?;
+        let nothing_else = buffers.storage("no light of other surfaces", &[TraceAmbient::default()])?;
+        let width = of_map.camera.width;
+        let traced: Vec<_> = traced.into_iter().flat_map(|rows| self.parts(rows, width)).collect();
         let most = traced.iter().map(|rows| rows.len() as u32).max().unwrap_or(0);
         let states = if most > 0 { self.states(buffers, &of_map.camera, most)? } else { None };
         let mut finest = Vec::new();
         for rows in traced {
             let of_rows = RenderFrame { first_row: rows.start, ..of_map };
-            let to = [&environment, &nothing];
+            let to = [&environment, &nothing, &nothing_else];
             finest.push(self.rays(buffers, scene, &of_rows, to, states.as_ref(), rows.len() as u32)?);
         }
         let lighting = scene.lighting(buffers, frame)?;

@@ -24,6 +24,9 @@ const PIXELS_PER_DISPATCH: u32 = 1 << 17;
 /// end of each.
 const DISPATCH_MS: f64 = 60.0;
 
+/// Bindings of what rays leave: the picture, and light of first surfaces and of others.
+const TO: [u32; 3] = [7, 8, 10];
+
 /// Rows of the table that are compared and written together.
 const ROWS_PER_BLOCK: usize = 16;
 
@@ -157,8 +160,11 @@ impl ScenePipeline {
         let picture = buffers.buffer("picture", pixels * 16, storage)?;
         let bytes = pixels * size_of::<TraceAmbient>() as u64;
         let found_light = buffers.buffer(of_light, bytes, storage)?;
+        let of_others = buffers.buffer("light of other surfaces", bytes, storage)?;
         let samples = f64::from(frame.grid * frame.grid);
-        let paced = sample_ms.map_or(0, |ms| (DISPATCH_MS / (ms * samples).max(1.0e-9)) as u32);
+        // What pixels have so far takes room on a device that keeps it.
+        let pace = sample_ms.filter(|_| self.takes_samples_together());
+        let paced = pace.map_or(0, |ms| (DISPATCH_MS / (ms * samples).max(1.0e-9)) as u32);
         let rows = paced.max(PIXELS_PER_DISPATCH) / frame.camera.width.max(1);
         let rows = rows.clamp(8, frame.camera.height.max(8)).next_multiple_of(8 * frame.ray_spacing);
         let (mut bands, mut filters) = (Vec::new(), Vec::new());
@@ -166,25 +172,38 @@ impl ScenePipeline {
         for first_row in (0..frame.camera.height).step_by(rows as usize) {
             let frame = RenderFrame { first_row, ..*frame };
             let rows = rows.min(frame.camera.height - first_row);
-            bands.push(self.rays(buffers, scene, &frame, [&picture, &found_light], states.as_ref(), rows)?);
+            let to = [&picture, &found_light, &of_others];
+            bands.push(self.rays(buffers, scene, &frame, to, states.as_ref(), rows)?);
         }
         let means = |label| buffers.buffer(label, pixels * 32, storage);
-        // The last pass writes the second.
+        // The last mean is in the second; after it come the other surfaces.
         let means = [means("means of light")?, means(of_means)?];
         const { assert!(SKYLIGHT_PASSES % 2 == 1) };
-        for turn in 0..=SKYLIGHT_PASSES {
+        for turn in 0..=SKYLIGHT_PASSES + 1 {
             let [from, to] = [&means[(turn as usize + 1) % 2], &means[turn as usize % 2]];
             for first_row in (0..frame.camera.height).step_by(rows as usize) {
                 let groups = groups(&frame.camera, rows.min(frame.camera.height - first_row));
                 let frame = RenderFrame { first_row, turn, ..*frame };
                 let uniform = buffers.uniform("frame", &frame)?;
-                let bound = self.skylight.bind(buffers, &[&uniform, &found_light, from, to, &picture])?;
+                let of_means = [(0, &uniform), (1, &found_light), (2, from), (3, to), (4, &picture)];
+                let bound = of_means.into_iter().chain([(9, &of_others)]);
+                let bound = self.skylight.bind_at(buffers, bound)?;
                 filters.push((bound, groups));
             }
         }
         let [_, means] = means;
         let light = LightOnGpu { ambient: found_light, means };
         Ok(ScenePass { pipeline: self, bands, filters, picture, light })
+    }
+
+    /// Ranges of rows of a picture, none larger than what a device takes at once that keeps what pixels have so far.
+    pub(super) fn parts(&self, rows: Range<u32>, width: u32) -> Vec<Range<u32>> {
+        let most = if self.takes_samples_together() { u32::MAX } else { PIXELS_PER_DISPATCH };
+        let step = (most / width.max(1) / 8 * 8).max(8);
+        rows.clone()
+            .step_by(step as usize)
+            .map(|first| first..(first.saturating_add(step)).min(rows.end))
+            .collect()
     }
 
     /// Room for what `rows` rows of pixels have so far, if their samples have dispatches of their own.
@@ -200,13 +219,13 @@ impl ScenePipeline {
     }
 
     /// Prepares the rays of `rows` rows of pixels, which leave what they find in `to`: the picture, and the light that goes to the
-    /// filter. `states`: [`ScenePipeline::states`].
+    /// filter, of the first surfaces and of others. `states`: [`ScenePipeline::states`].
     pub(super) fn rays(
         &self,
         buffers: &impl BufferSource,
         scene: &SceneOnGpu,
         frame: &RenderFrame,
-        to: [&wgpu::Buffer; 2],
+        to: [&wgpu::Buffer; 3],
         states: Option<&wgpu::Buffer>,
         rows: u32,
     ) -> Result<SceneRays<'_>, GpuError> {
@@ -214,7 +233,8 @@ impl ScenePipeline {
         let groups = frame.pixels_that_look().workgroups([frame.camera.width, rows]);
         let Some((seen, states)) = self.seen.as_ref().zip(states) else {
             let uniform = buffers.uniform("frame", frame)?;
-            let bound = tracer.bind_at(buffers, scene.buffers(&uniform).into_iter().chain((7..).zip(to)))?;
+            let bound =
+                tracer.bind_at(buffers, scene.buffers(&uniform).into_iter().chain(TO.into_iter().zip(to)))?;
             return Ok(SceneRays { turns: vec![(tracer, bound)], groups });
         };
         let mut turns = Vec::new();
@@ -224,7 +244,7 @@ impl ScenePipeline {
             turns.push((tracer, tracer.bind_at(buffers, bound)?));
         }
         let uniform = buffers.uniform("frame", frame)?;
-        let bound = [(0, &uniform), (7, to[0]), (8, to[1]), (9, states)];
+        let bound = [(0, &uniform), (9, states)].into_iter().chain(TO.into_iter().zip(to));
         turns.push((seen, seen.bind_at(buffers, bound)?));
         Ok(SceneRays { turns, groups })
     }
