@@ -1,6 +1,7 @@
 //! The adapter that the tests run on.
 
 use downpour_gpu::{AdapterChoice, Gpu, GpuError, GpuOptions, LimitSet};
+use downpour_shaders::render::scene::TRACE_STORAGE_BUFFERS;
 
 /// Set to `no`, GPU tests show as ignored. Anything else, or nothing, and a missing adapter is a failure.
 pub const SWITCH: &str = "DOWNPOUR_GPU_TESTS";
@@ -24,7 +25,7 @@ pub fn missing(error: &GpuError) -> String {
     )
 }
 
-/// A device with the limits that every WebGPU implementation has.
+/// A device with the limits that every WebGPU implementation has, but for the storage buffers of the kernel that traces all samples at once.
 ///
 /// # Errors
 /// Returns the error of [`Gpu::open_with`]: with no adapter, the drivers that were tried.
@@ -33,5 +34,6 @@ pub fn open() -> Result<Gpu, GpuError> {
         Ok(name) if !name.is_empty() => AdapterChoice::Named(name),
         _ => AdapterChoice::Auto,
     };
-    Gpu::open_with(&GpuOptions { adapter, limits: LimitSet::WebGpuDefault, ..GpuOptions::default() })
+    let limits = LimitSet::WebGpuWithBuffers(TRACE_STORAGE_BUFFERS);
+    Gpu::open_with(&GpuOptions { adapter, limits, ..GpuOptions::default() })
 }

@@ -1,14 +1,19 @@
-//! Every shader is valid, and every kernel becomes a pipeline on a device with WebGPU's default limits.
+//! Every shader is valid, and every kernel becomes a pipeline on a device with WebGPU's default limits; one needs a storage buffer more, and
+//! has another one in its place on such a device.
 
 use downpour_gpu::wgpu;
 use downpour_gpu::{ComputeKernel, Gpu};
+use downpour_shaders::render::scene::{TRACE_KERNEL, TRACE_STORAGE_BUFFERS};
 use downpour_shaders::{Module, compose, kernels, modules};
 use downpour_tests::signature::parse;
 
 /// wgpu's noop device: it validates, and computes nothing.
 fn noop() -> Gpu {
-    let descriptor =
-        wgpu::DeviceDescriptor { required_limits: wgpu::Limits::default(), ..Default::default() };
+    noop_with(wgpu::Limits::default())
+}
+
+fn noop_with(required_limits: wgpu::Limits) -> Gpu {
+    let descriptor = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
     let (device, queue) = wgpu::Device::noop(&descriptor);
     Gpu::on_device(device, queue)
 }
@@ -31,8 +36,14 @@ fn every_module_is_valid_with_what_it_uses() {
 #[test]
 fn every_kernel_makes_a_pipeline() {
     let gpu = noop();
+    let more = noop_with(wgpu::Limits {
+        max_storage_buffers_per_shader_stage: TRACE_STORAGE_BUFFERS,
+        ..wgpu::Limits::default()
+    });
     for kernel in kernels() {
-        ComputeKernel::new(&gpu, kernel, &[]).unwrap_or_else(|error| panic!("{}: {error}", kernel.entry));
+        let needs_more = kernel.entry == TRACE_KERNEL.entry;
+        let gpu = if needs_more { &more } else { &gpu };
+        ComputeKernel::new(gpu, kernel, &[]).unwrap_or_else(|error| panic!("{}: {error}", kernel.entry));
     }
 }
 

@@ -39,6 +39,8 @@ pub enum LimitSet {
     Adapter,
     /// WebGPU's default limits, as a browser gives them.
     WebGpuDefault,
+    /// The same, but for so many storage buffers per shader.
+    WebGpuWithBuffers(u32),
 }
 
 /// A device and its queue, with typed errors.
@@ -119,6 +121,9 @@ impl Gpu {
             required_limits: match options.limits {
                 LimitSet::Adapter => adapter.limits(),
                 LimitSet::WebGpuDefault => wgpu::Limits::default(),
+                LimitSet::WebGpuWithBuffers(count) => {
+                    wgpu::Limits { max_storage_buffers_per_shader_stage: count, ..wgpu::Limits::default() }
+                }
             },
             ..Default::default()
         }))

@@ -53,7 +53,8 @@ pub fn texture_taps(along: Vec2, across: Vec2, most: f32) -> TextureTaps {
     let narrow = first.min(second).sqrt().max(1.0);
     let taps = (length / narrow).ceil().clamp(1.0, most.max(1.0));
     let width = narrow.max(length / taps);
-    let line = (1.0 - width * width / (length * length).max(1.0e-20)).max(0.0).sqrt();
+    let rest = (1.0 - width * width / (length * length).max(1.0e-20)).max(0.0).sqrt();
+    let line = if taps > 1.0 { rest } else { 0.0 };
     let longer = if first >= second { along } else { across };
     TextureTaps { line: longer * line, taps, width }
 }

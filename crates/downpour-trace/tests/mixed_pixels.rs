@@ -24,8 +24,12 @@ fn square(builder: &mut SceneBuilder, material: u32, middle: Vec3, across: Vec3,
 /// Slanted bars in the open air, half a pixel and two pixels wide, before the dark inside of a shed: all of one material.
 fn shed() -> SceneData {
     let mut builder = SceneBuilder::new();
-    let paint =
-        MaterialLook { base_color: [0.6, 0.6, 0.6, 1.0], roughness: 1.0, ior: 1.0, ..MaterialLook::default() };
+    let paint = MaterialLook {
+        base_color: [0.6, 0.6, 0.6, 1.0],
+        roughness: 1.0,
+        ior: 1.0,
+        ..MaterialLook::default()
+    };
     let paint = builder.add_material(paint);
     let deep = Vec3::NEG_Z * 6.0;
     square(&mut builder, paint, deep, Vec3::X * 4.0, Vec3::Y * 3.0);
@@ -37,15 +41,20 @@ fn shed() -> SceneData {
     for k in 0..8u8 {
         let middle = Vec3::new(f32::from(k) * 0.5 - 1.75, 0.0, 0.5);
         let half = if k % 2 == 0 { 0.02 } else { 0.08 };
-        square(&mut builder, paint, middle, Vec3::new(cosine, sine, 0.0) * half, Vec3::new(-sine, cosine, 0.0));
+        square(
+            &mut builder,
+            paint,
+            middle,
+            Vec3::new(cosine, sine, 0.0) * half,
+            Vec3::new(-sine, cosine, 0.0),
+        );
     }
     builder.build(&SkyLight::uniform([1.0; 3]))
 }
 
 /// Green of the mean of pictures with other rays.
 fn picture(scene: &SceneData, size: [u32; 2], grid: u32, seeds: u64) -> Vec<f32> {
-    let view =
-        Viewpoint { eye: Vec3::new(0.3, 0.2, 6.0), forward: Vec3::NEG_Z, up: Vec3::Y, fov_y: 0.7 };
+    let view = Viewpoint { eye: Vec3::new(0.3, 0.2, 6.0), forward: Vec3::NEG_Z, up: Vec3::Y, fov_y: 0.7 };
     let mut sum = vec![0.0; (size[0] * size[1]) as usize];
     for seed in 0..seeds {
         let frame = RenderFrame::new(scene, &view, size, grid, 1, seed).unwrap();

@@ -263,6 +263,9 @@ pub static TRACE_SAMPLE_KERNEL: Kernel =
 pub static TRACE_SEEN_KERNEL: Kernel =
     Kernel { entry: "main_trace_seen", module: &TRACE, workgroup: [8, 8, 1] };
 
+/// Storage buffers of `main_trace`: one more than WebGPU's default limit. A device with fewer takes the samples one by one.
+pub const TRACE_STORAGE_BUFFERS: u32 = 9;
+
 /// Bytes of a pixel that `main_trace_sample` keeps from sample to sample (`TraceState`).
 pub const TRACE_STATE_BYTES: u64 = 576;
 

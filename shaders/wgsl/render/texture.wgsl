@@ -64,7 +64,8 @@ fn texture_taps(along: vec2f, across: vec2f, most: f32) -> vec4f {
     let narrow = max(sqrt(min(first, second)), 1.0);
     let taps = clamp(ceil(length / narrow), 1.0, max(most, 1.0));
     let width = max(narrow, length / taps);
-    let line = sqrt(max(1.0 - width * width / max(length * length, 1.0e-20), 0.0));
+    let rest = sqrt(max(1.0 - width * width / max(length * length, 1.0e-20), 0.0));
+    let line = select(0.0, rest, taps > 1.0);
     let longer = select(across, along, first >= second);
     return vec4f(longer * line, taps, width);
 }

@@ -5,7 +5,8 @@ use std::sync::{Arc, OnceLock};
 
 use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, FramePasses, Gpu, GpuError, made_once, wgpu};
 use downpour_shaders::render::scene::{
-    SKYLIGHT_KERNEL, SKYLIGHT_PASSES, TRACE_KERNEL, TRACE_SAMPLE_KERNEL, TRACE_SEEN_KERNEL, TRACE_STATE_BYTES,
+    SKYLIGHT_KERNEL, SKYLIGHT_PASSES, TRACE_KERNEL, TRACE_SAMPLE_KERNEL, TRACE_SEEN_KERNEL,
+    TRACE_STATE_BYTES, TRACE_STORAGE_BUFFERS,
 };
 
 use downpour_lattice::gpu::puddle::PuddleSlopesPass;
@@ -36,14 +37,17 @@ pub enum SampleDispatches {
     /// All of them in one dispatch.
     Together,
     /// Each in a dispatch of its own, with what the pixel has so far in a buffer: software drivers of Mesa end the loops of an
-    /// invocation after 65 535 turns in all, without an error.
+    /// invocation after 65 535 turns in all, without an error; and devices with no more than WebGPU's default limits have too few
+    /// bindings for all of them.
     Apart,
 }
 
 impl SampleDispatches {
     /// What a device needs.
     fn of(gpu: &Gpu) -> Self {
-        if gpu.adapter().is_software() { Self::Apart } else { Self::Together }
+        let buffers = gpu.device().limits().max_storage_buffers_per_shader_stage;
+        let apart = gpu.adapter().is_software() || buffers < TRACE_STORAGE_BUFFERS;
+        if apart { Self::Apart } else { Self::Together }
     }
 }
 
