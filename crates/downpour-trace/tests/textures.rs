@@ -1,6 +1,7 @@
 //! Textures under the camera's pixels: what a pixel shows is the mean of what it sees, from any angle and by any coordinates.
 #![expect(clippy::unwrap_used, reason = "a failed step is a failed test")]
 
+use downpour_math::ops;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_shaders::bvh::BVH_FAR;
 use downpour_shaders::render::scene::TEXTURE_TAPS;
@@ -46,8 +47,9 @@ fn ground(texels: &[f32], coordinates: Affine2, second: bool) -> SceneData {
 
 /// Direction of a ray that goes down by an angle, turned about the vertical.
 fn ray(down: f32, turn: f32) -> Vec3 {
-    let (sine, cosine) = (down.to_radians().sin(), down.to_radians().cos());
-    Vec3::new(cosine * turn.to_radians().sin(), -sine, -cosine * turn.to_radians().cos())
+    let (down, turn) = (down.to_radians(), turn.to_radians());
+    let level = ops::cos(down);
+    Vec3::new(level * ops::sin(turn), -ops::sin(down), -level * ops::cos(turn))
 }
 
 /// Red of the ground that a pixel sees, with `taps` samples.
