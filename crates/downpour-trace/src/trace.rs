@@ -1,7 +1,7 @@
 //! Pixels by rays: of the picture, and of the environment capture. Twin of `shaders/wgsl/render/trace.wgsl`.
 //!
-//! Samples of a pixel that meet one surface are shaded once. Light of sky and surfaces is kept apart for the surface of a pixel's first sample and for another one, if it
-//! shows more: [`skylight`](crate::skylight) takes means of what neighboring pixels have found of it.
+//! Samples of a pixel that meet one surface are shaded once. Light of sky and surfaces is kept apart for the surface of a pixel's first
+//! sample and for another one, if it shows more: [`skylight`](crate::skylight) takes means of what neighboring pixels have found of it.
 
 use downpour_math::packing::{
     packing_octahedral_decode, packing_octahedral_encode, packing_pack_half, packing_pack_snorm,
@@ -190,9 +190,6 @@ struct TraceState {
     base: TracePair,
     mirror: TracePair,
     last: ViewPath,
-    count: u16,
-    /// True if it needs no more samples.
-    ended: bool,
 }
 
 impl TraceState {
@@ -204,8 +201,6 @@ impl TraceState {
             base: TracePair::NONE,
             mirror: TracePair::NONE,
             last: ViewPath::NOTHING,
-            count: 0,
-            ended: false,
         }
     }
 }
@@ -227,11 +222,8 @@ impl SceneView<'_> {
         seen + capture_suns(self, x, y)
     }
 
-    /// The pixel with sample `k` of it, unless it needs no more.
+    /// The pixel with sample `k` of it.
     fn trace_sample(&self, state: &mut TraceState, x: u32, y: u32, k: u32) {
-        if state.ended {
-            return;
-        }
         let n = self.frame.grid;
         let dx = ((k % n) as f32 + 0.5) / n as f32;
         let dy = ((k / n) as f32 + 0.5) / n as f32;
@@ -245,35 +237,30 @@ impl SceneView<'_> {
         state.base = state.base.trace_add(&path.base, self.frame);
         state.mirror = state.mirror.trace_add(&path.mirror, self.frame);
         state.nearest = state.nearest.min(path.distance);
-        state.count += 1;
         state.last = path;
         if k > 0 && !path.again {
             // A pixel of more than one surface is worth the rays of all its samples.
             state.last.plain = false;
         }
-        if k + 1 >= n * n {
-            state.ended = true;
-            if !is_picture {
-                let mean = state.sum * (1.0 / f32::from(state.count));
-                state.sum = self.trace_captured(mean, state.nearest, x, y);
-                state.count = 1;
-            }
+        if k + 1 == n * n && !is_picture {
+            state.sum = self.trace_captured(state.sum * (1.0 / (n * n) as f32), state.nearest, x, y);
         }
     }
 
-    /// A pixel that needs no more samples: mean radiance, and the distance of what stands nearest in it. In the picture the light
-    /// of sky and surfaces on the first surface is left out; it is the second of the two.
+    /// A pixel with all its samples: mean radiance, and the distance of what stands nearest in it. In the picture the light of sky and
+    /// surfaces on its surfaces is left out; it is the second of the two.
     fn trace_seen(&self, state: &TraceState) -> (Vec4, TraceFound) {
-        let fraction = 1.0 / f32::from(state.count);
-        let mut found = TraceFound::default();
-        let mut seen = state.sum;
-        if self.frame.projection == SCENE_PICTURE {
-            seen += state.base.rest + state.mirror.rest;
-            let mean = |sum: &TraceSum| sum.trace_mean(fraction, self.frame.camera.eye);
-            let (base, mirror) = (&state.base, &state.mirror);
-            found.first = TraceAmbient { base: mean(&base.first), mirror: mean(&mirror.first) };
-            found.other = TraceAmbient { base: mean(&base.other), mirror: mean(&mirror.other) };
+        if self.frame.projection != SCENE_PICTURE {
+            return (state.sum.extend(state.nearest), TraceFound::default());
         }
+        let fraction = 1.0 / (self.frame.grid * self.frame.grid) as f32;
+        let mean = |sum: &TraceSum| sum.trace_mean(fraction, self.frame.camera.eye);
+        let (base, mirror) = (&state.base, &state.mirror);
+        let found = TraceFound {
+            first: TraceAmbient { base: mean(&base.first), mirror: mean(&mirror.first) },
+            other: TraceAmbient { base: mean(&base.other), mirror: mean(&mirror.other) },
+        };
+        let seen = state.sum + (base.rest + mirror.rest);
         ((seen * fraction).extend(state.nearest), found)
     }
 
@@ -281,11 +268,8 @@ impl SceneView<'_> {
     #[must_use]
     pub fn trace_pixel(&self, x: u32, y: u32) -> (Vec4, TraceFound) {
         let mut state = TraceState::trace_begin();
-        for k in 0.. {
+        for k in 0..self.frame.grid * self.frame.grid {
             self.trace_sample(&mut state, x, y, k);
-            if state.ended {
-                break;
-            }
         }
         self.trace_seen(&state)
     }

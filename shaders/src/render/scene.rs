@@ -267,7 +267,7 @@ pub static TRACE_SEEN_KERNEL: Kernel =
 pub const TRACE_STORAGE_BUFFERS: u32 = 9;
 
 /// Bytes of a pixel that `main_trace_sample` keeps from sample to sample (`TraceState`).
-pub const TRACE_STATE_BYTES: u64 = 576;
+pub const TRACE_STATE_BYTES: u64 = 560;
 
 /// The sky's light over neighboring pixels. Twin: `downpour_trace::skylight`.
 pub static SKYLIGHT: Module = Module {

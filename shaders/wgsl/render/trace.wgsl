@@ -1,7 +1,7 @@
 // Pixels by rays: of the picture, and of the environment capture. Both are one kernel, since a software driver
 // compiles the walk through the scene anew for each.
-// Samples of a pixel that meet one surface are shaded once. Light of sky and surfaces on the surfaces of a pixel leaves the picture's kernel as what one pixel has found
-// of it, on the surface of its first sample and on another one if it shows more; skylight.wgsl takes means over neighbors.
+// Samples of a pixel that meet one surface are shaded once. Light of sky and surfaces leaves the picture's kernel as what one pixel has
+// found of it, on the surface of its first sample and on another one if it shows more; skylight.wgsl takes means over neighbors.
 // Twin: downpour_trace::trace.
 
 @group(0) @binding(7) var<storage, read_write> trace_picture: array<vec4f>;
@@ -55,9 +55,6 @@ struct TraceState {
     base: TracePair,
     mirror: TracePair,
     last: ViewPath,
-    count: u32,
-    // 1: it needs no more samples.
-    ended: u32,
 }
 
 // A slot, packed.
@@ -181,11 +178,8 @@ fn trace_captured(mean: vec3f, nearest: f32, x: u32, y: u32) -> vec3f {
     return seen + capture_suns(x, y);
 }
 
-// The pixel with sample `k` of it, unless it needs no more.
+// The pixel with sample `k` of it.
 fn trace_sample(state: ptr<function, TraceState>, x: u32, y: u32, k: u32) {
-    if (*state).ended > 0u {
-        return;
-    }
     let n = render_frame.grid;
     let dx = (f32(k % n) + 0.5) / f32(n);
     let dy = (f32(k / n) + 0.5) / f32(n);
@@ -202,39 +196,33 @@ fn trace_sample(state: ptr<function, TraceState>, x: u32, y: u32, k: u32) {
     (*state).base = trace_add((*state).base, path.base);
     (*state).mirror = trace_add((*state).mirror, path.mirror);
     (*state).nearest = min((*state).nearest, path.distance);
-    (*state).count += 1u;
     (*state).last = path;
     if k > 0u && path.again == 0u {
         // A pixel of more than one surface is worth the rays of all its samples.
         (*state).last.plain = 0u;
     }
-    if k + 1u >= n * n {
-        (*state).ended = 1u;
-        if render_frame.projection != SCENE_PICTURE {
-            (*state).sum = trace_captured((*state).sum * (1.0 / f32((*state).count)), (*state).nearest, x, y);
-            (*state).count = 1u;
-        }
+    if k + 1u == n * n && render_frame.projection != SCENE_PICTURE {
+        (*state).sum = trace_captured((*state).sum * (1.0 / f32(n * n)), (*state).nearest, x, y);
     }
 }
 
-// A pixel that needs no more samples: mean radiance, and the distance of what stands nearest in it. In the picture the light of
-// sky and surfaces on the first surface is left out and goes to the filter.
+// A pixel with all its samples: mean radiance, and the distance of what stands nearest in it. In the picture the light of sky and
+// surfaces on its surfaces is left out and goes to the filter.
 fn trace_seen(state: TraceState, x: u32, y: u32) -> vec4f {
-    let fraction = 1.0 / f32(state.count);
-    var seen = state.sum;
-    if render_frame.projection == SCENE_PICTURE {
-        seen += state.base.rest + state.mirror.rest;
-        let pixel = y * render_frame.camera.width + x;
-        trace_ambient[pixel] = TraceAmbient(trace_mean(state.base.first, fraction), trace_mean(state.mirror.first, fraction));
-        trace_others[pixel] = TraceAmbient(trace_mean(state.base.other, fraction), trace_mean(state.mirror.other, fraction));
+    if render_frame.projection != SCENE_PICTURE {
+        return vec4f(state.sum, state.nearest);
     }
-    return vec4f(seen * fraction, state.nearest);
+    let fraction = 1.0 / f32(render_frame.grid * render_frame.grid);
+    let pixel = y * render_frame.camera.width + x;
+    trace_ambient[pixel] = TraceAmbient(trace_mean(state.base.first, fraction), trace_mean(state.mirror.first, fraction));
+    trace_others[pixel] = TraceAmbient(trace_mean(state.base.other, fraction), trace_mean(state.mirror.other, fraction));
+    return vec4f((state.sum + (state.base.rest + state.mirror.rest)) * fraction, state.nearest);
 }
 
 // A pixel with all its samples.
 fn trace_pixel(x: u32, y: u32) -> vec4f {
     var state = trace_begin();
-    for (var k = 0u; state.ended == 0u; k += 1u) {
+    for (var k = 0u; k < render_frame.grid * render_frame.grid; k += 1u) {
         trace_sample(&state, x, y, k);
     }
     return trace_seen(state, x, y);

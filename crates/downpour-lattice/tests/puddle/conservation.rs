@@ -1,7 +1,6 @@
 //! Energy, volume, rest, walls, borders, threads.
 
 use downpour_lattice::puddle::{Puddle, PuddleBorder, PuddleDamping, PuddleOptions, PuddleStorage};
-
 use rayon::prelude::*;
 
 use crate::{hill, membrane, set, undamped};
@@ -42,7 +41,7 @@ fn energy_stays_without_damping() {
 }
 
 #[test]
-#[ignore = "a million steps take a minute"]
+#[ignore = "a million steps take two minutes"]
 fn energy_stays_for_a_million_steps() {
     [undamped([64, 64]), membrane([64, 64])].par_iter().for_each(|options| {
         let drift = energy_drift(options, 1_000_000, 20);
