@@ -7,6 +7,7 @@ pub mod glass;
 pub mod glazing;
 pub mod glow;
 pub mod host;
+pub mod impostor;
 pub mod layers;
 pub mod medium;
 pub mod pane_shadow;

@@ -12,6 +12,7 @@ mod glass;
 mod glass_picture;
 mod glazing;
 mod host;
+mod impostor;
 mod mask;
 mod pane_shadow;
 mod puddle;
@@ -41,6 +42,7 @@ pub fn functions() -> Vec<FunctionCase> {
         glass::functions(),
         glass_picture::functions(),
         glazing::functions(),
+        impostor::functions(),
         host::functions(),
         mask::functions(),
         puddle::functions(),
@@ -72,6 +74,7 @@ pub fn kernels() -> Vec<KernelCase> {
         glass::kernels(),
         glass_picture::kernels(),
         glazing::kernels(),
+        impostor::kernels(),
         host::kernels(),
         mask::kernels(),
         puddle::kernels(),

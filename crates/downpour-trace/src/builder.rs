@@ -205,6 +205,8 @@ impl SceneBuilder {
             sky: Arc::new(sky.texels.clone()),
             sky_levels: sky.levels,
             sky_irradiance: sky.irradiance,
+            impostors: None,
+            impostor_picture: Arc::default(),
             #[cfg(feature = "wgpu")]
             ripples: None,
         };

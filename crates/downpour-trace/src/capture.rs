@@ -49,6 +49,7 @@ pub fn environment_frame(picture: &RenderFrame, environment: &EnvironmentFrame) 
         ray_spacing: 1,
         ray_column: 0,
         ray_row: 0,
+        impostors: 0,
         ..*picture
     }
 }

@@ -17,6 +17,8 @@ use downpour_shaders::render::scene::{
 };
 use glam::Vec3;
 
+use crate::billboards::Impostors;
+
 /// Part of the pixels over which the filter takes means that one is.
 const WINDOW_FRACTION: f32 = 1.0 / ((2 * SKYLIGHT_RADIUS + 1) * (2 * SKYLIGHT_RADIUS + 1)) as f32;
 
@@ -66,7 +68,8 @@ pub struct RenderFrame {
     pub ray_fraction: f32,
     /// Kind of image that is traced: the picture, or a capture.
     pub projection: u32,
-    /// 1: the capture leaves parallel light out, since drops are lit by it on their own ([`downpour_render::rain::light`]).
+    /// 1: the capture leaves parallel light and lamps out, since drops are lit by them on their own
+    /// ([`downpour_render::rain::light`]). `SCENE_ALL_OUT`: all that shines by itself.
     pub suns_out: u32,
     /// Row of the table where puddles begin.
     pub puddles: u32,
@@ -89,6 +92,15 @@ pub struct RenderFrame {
     pub ray_row: u32,
     /// Row of the table where rain on panes of the scene begins; 0: they are dry.
     pub glazing: u32,
+    /// Number of billboards in the buffer of mirrored things, and one ([`impostor`](crate::impostor)); 0: what wet surfaces mirror is found
+    /// by rays.
+    pub impostors: u32,
+    /// Edge coefficient of reflections from that buffer: the paper's f0.
+    pub impostor_edge: f32,
+    /// Not used.
+    pub unused_a: u32,
+    /// Not used.
+    pub unused_b: u32,
     /// Width, height and first texel of each level of the sky.
     pub sky_levels: [[u32; 4]; SCENE_SKY_LEVELS as usize],
     /// Irradiance of the sky over pi as spherical harmonics of degree 2.
@@ -132,6 +144,10 @@ pub struct SceneData {
     pub sky_levels: [[u32; 4]; SCENE_SKY_LEVELS as usize],
     /// Irradiance of the sky over pi.
     pub sky_irradiance: [[f32; 4]; 9],
+    /// What wet surfaces mirror as billboards; `None`: what rays find.
+    pub impostors: Option<Arc<Impostors>>,
+    /// The buffer of these for a frame on the CPU: [`SceneView::mirrored_picture`](crate::scene::SceneView::mirrored_picture).
+    pub impostor_picture: Arc<Vec<[u32; 2]>>,
     /// Ripples that a device holds: the table shows level water in their place.
     #[cfg(feature = "wgpu")]
     pub ripples: Option<crate::gpu::RipplesOnGpu>,
@@ -279,6 +295,10 @@ impl RenderFrame {
             ray_column: 0,
             ray_row: 0,
             glazing: scene.glazing,
+            impostors: scene.impostors.as_ref().map_or(0, |list| list.billboards.len() as u32 + 1),
+            impostor_edge: scene.impostors.as_ref().map_or(0.0, |list| list.edge),
+            unused_a: 0,
+            unused_b: 0,
             sky_levels: scene.sky_levels,
             sky_irradiance: scene.sky_irradiance,
         })

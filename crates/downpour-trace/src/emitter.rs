@@ -75,6 +75,20 @@ impl SceneData {
         }
     }
 
+    /// The triangles that shine, as leaves of the tree.
+    pub(crate) fn shining_leaves(&self) -> Vec<EmitterNode> {
+        let (mut leaves, mut open) = (Vec::new(), vec![0]);
+        while let Some(index) = open.pop().filter(|_| self.emitters > 0) {
+            let node = self.emitter_load(index);
+            if node.color == 0 {
+                open.extend([node.next + 1, node.next]);
+            } else {
+                leaves.push(node);
+            }
+        }
+        leaves
+    }
+
     /// A place of one of the surfaces that shine, drawn for all of them, as a light: of color 0 if none shines on the surface.
     /// `numbers` are uniform in [0, 1).
     pub(crate) fn emitter_draw(&self, position: Vec3, normal: Vec3, numbers: [f32; 3]) -> Light {

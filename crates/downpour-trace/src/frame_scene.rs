@@ -23,12 +23,13 @@ use std::sync::Arc;
 use downpour_scene::scene::Pose;
 use downpour_sim::field::FallingDrop;
 use downpour_sim::view::View;
-use downpour_weather::{self as weather, Loaded, Reloaded, Weather};
+use downpour_weather::{self as weather, Loaded, Reloaded, Weather, WetReflections};
 use glam::DVec3;
 
 use crate::assemble::SceneLooks;
 use crate::data::SceneData;
 use crate::glazing;
+use crate::impostor;
 use crate::wet::SceneWetness;
 use downpour_render::RenderError;
 use downpour_render::camera::{EyeMotion, MAX_EXPOSURE_S, PictureEdge, Viewpoint, check_size};
@@ -103,6 +104,20 @@ fn set_time(data: &mut SceneData, weather: &Weather, loaded: &Loaded, origin: DV
     data.set_glazing(&glazing::rows(weather, &loaded.scene, time_s, origin));
 }
 
+/// Finds what wet surfaces mirror as billboards, if the weather asks for them.
+///
+/// # Errors
+/// [`RenderError`] for an invalid eye.
+fn set_impostors(data: &mut SceneData, weather: &Weather, viewpoint: &Viewpoint) -> Result<(), RenderError> {
+    let before = data.impostors.take();
+    if let (WetReflections::Tatarchuk2006 { edge }, true) =
+        (weather.wetness.reflections, data.wetness > 0 || !weather.puddles.is_empty())
+    {
+        data.impostors = Some(impostor::list::find(data, viewpoint, edge as f32, before.as_ref())?);
+    }
+    Ok(())
+}
+
 impl FrameScene {
     /// Builds the scene of a weather's frame at a time in seconds: animated models, sky, sun, lamps, camera.
     ///
@@ -160,6 +175,7 @@ impl FrameScene {
         set_fov(&mut viewpoint, weather, time_s);
         // An invalid camera is reported here, before the work begins.
         viewpoint.axes()?;
+        set_impostors(&mut data, weather, &viewpoint)?;
         Ok(Self {
             data,
             viewpoint,
@@ -188,6 +204,7 @@ impl FrameScene {
             let mut frame_scene = Self { shutter_s: weather.drop_exposure_s(time_s), ..self.clone() };
             set_fov(&mut frame_scene.viewpoint, weather, time_s);
             set_time(&mut frame_scene.data, weather, loaded, self.origin, time_s);
+            set_impostors(&mut frame_scene.data, weather, &frame_scene.viewpoint)?;
             return Ok(frame_scene);
         };
         let distance_m = (seen.eye - self.origin).abs().max_element();
@@ -204,6 +221,7 @@ impl FrameScene {
             ..self.clone()
         };
         set_time(&mut frame_scene.data, weather, loaded, self.origin, time_s);
+        set_impostors(&mut frame_scene.data, weather, &viewpoint)?;
         Ok(frame_scene)
     }
 

@@ -1,6 +1,7 @@
 //! Scenes on a GPU: the same rays as on the CPU, from the same buffers.
 
 mod falling;
+mod impostor;
 mod picture;
 mod plate;
 mod ripples;
@@ -8,6 +9,7 @@ mod scene;
 mod temporal;
 
 pub use falling::{FieldDrops, FoundDrops, PictureDrops};
+pub use impostor::{ImpostorPass, ImpostorPipeline};
 pub use picture::{
     DisplayPicture, DisplayReadback, GpuPictureError, PictureOnGpu, PictureReadback, PictureRenderer,
     PictureUse,

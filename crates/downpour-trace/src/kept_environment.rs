@@ -106,7 +106,14 @@ fn band_rows(size: u32) -> u32 {
 
 /// The frame without what an environment map does not depend on, and without its eye.
 fn poseless(frame: &RenderFrame) -> RenderFrame {
-    RenderFrame { camera: Camera::zeroed(), grid: 0, nearest: 0.0, ..frame.with_ray_spacing(1) }
+    RenderFrame {
+        camera: Camera::zeroed(),
+        grid: 0,
+        nearest: 0.0,
+        impostors: 0,
+        impostor_edge: 0.0,
+        ..frame.with_ray_spacing(1)
+    }
 }
 
 #[cfg(test)]

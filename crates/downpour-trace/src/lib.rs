@@ -5,7 +5,8 @@
 //!   light that comes there; [`skylight`] filters it over neighboring pixels, [`temporal`] over the frames of a clip;
 //! - [`capture`]: radiance from every direction around the eye, for the drops;
 //! - [`emitter`]: surfaces that shine, as lights;
-//! - [`wet`]: surfaces that rain has made wet; [`puddle`], [`wet_ground`]: water that stands on the ground; [`pane_shadow`]: the light through a wet pane;
+//! - [`wet`]: surfaces that rain has made wet; [`impostor`]: what they mirror as billboards; [`puddle`], [`wet_ground`]: water that
+//!   stands on the ground; [`pane_shadow`]: the light through a wet pane;
 //! - [`frame_scene`]: the scene and the eye of a weather at a time;
 //! - [`truth`]: what the pixels of a picture show, in numbers;
 //! - [`picture`]: the plate of a scene, and the rain of [`downpour_render`] before it.
@@ -16,6 +17,7 @@
 )]
 
 mod assemble;
+pub mod billboards;
 #[cfg(not(feature = "parity"))]
 mod brdf;
 #[cfg(feature = "parity")]
@@ -37,6 +39,7 @@ mod glazing;
 pub mod glazing;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
+pub mod impostor;
 pub mod kept;
 pub mod kept_environment;
 pub mod material;

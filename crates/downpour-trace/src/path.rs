@@ -36,8 +36,8 @@ use downpour_shaders::render::puddle_water::{
     PUDDLE_WATER_DOWN, PUDDLE_WATER_INDEX, PUDDLE_WATER_MATERIAL, PUDDLE_WATER_RAYS, PUDDLE_WATER_RIPPLED,
 };
 use downpour_shaders::render::scene::{
-    SCENE_FAR, SCENE_LAMP_GLASS, SCENE_LAYERS, SCENE_NONE, SCENE_PICTURE, SCENE_SEEN_BODY, SCENE_UNLIT,
-    SKYLIGHT_SLACK, TEXTURE_TAPS,
+    SCENE_ALL_OUT, SCENE_FAR, SCENE_LAMP_GLASS, SCENE_LAYERS, SCENE_NONE, SCENE_PICTURE, SCENE_SEEN_BODY,
+    SCENE_UNLIT, SKYLIGHT_SLACK, TEXTURE_TAPS,
 };
 use downpour_shaders::render::wet::WET_FAR;
 use glam::{Vec2, Vec3};
@@ -53,7 +53,8 @@ pub use downpour_render::path_lattice::{path_lattice_numbers, path_lattice_words
 use draw::{path_onward, path_replaced, path_water_fraction, path_water_ray};
 pub(crate) use plan::path_max;
 use plan::{
-    PathPlan, path_albedo, path_cover, path_open, path_secondary, path_submerged, path_water_surface,
+    PathPlan, path_albedo, path_cover, path_matte, path_open, path_secondary, path_submerged,
+    path_water_surface,
 };
 
 /// Result of tracing a ray of the camera.
@@ -315,6 +316,19 @@ impl SceneView<'_> {
                 path.facet = found.facet;
                 path.position = found.position;
             }
+            let is_shown = frame.impostors > 0 && !under && frame.projection == SCENE_PICTURE;
+            if let (true, Some(_), Some(water)) = (is_shown, met, &water) {
+                let fraction = path_water_fraction(water.ripple, -towards);
+                path.radiance +=
+                    throughput * self.impostor_mirrored(found.facet, found.normal, towards) * fraction;
+                found.flags |= SCENE_UNLIT;
+            } else if is_shown && found.film > 0.0 && found.porosity > 0.0 {
+                // What is smooth shows its own rays, as it does when it is dry.
+                let gloss = self.path_gloss(&found, (-found.normal.dot(towards)).max(0.0));
+                path.radiance +=
+                    throughput * self.impostor_mirrored(found.facet, found.normal, towards) * gloss;
+                found = path_matte(&found, gloss);
+            }
             near = hit.distance + frame.nearest;
             let told = path.base.slack == 0.0 && path_cover(&found) == 1.0 && found.transmission == 0.0;
             let unlit = found.flags & SCENE_UNLIT != 0;
@@ -322,7 +336,9 @@ impl SceneView<'_> {
             if !unlit {
                 let is_lamp = found.flags & SCENE_LAMP_GLASS != 0;
                 // Drops are lit by lamps on their own.
-                let left_out = is_lamp && frame.projection != SCENE_PICTURE && frame.suns_out > 0;
+                let all_out = frame.suns_out == SCENE_ALL_OUT;
+                let left_out =
+                    (is_lamp || all_out) && frame.projection != SCENE_PICTURE && frame.suns_out > 0;
                 // The lattice has few points along its third axis: each pixel is somewhere between them.
                 // Of lamps no means over neighbors are taken, where a lattice would be seen.
                 let [x, y, z, w] = path_lattice_numbers(random, 0, 0, 0, 1);
@@ -339,7 +355,7 @@ impl SceneView<'_> {
             }
             let free = path.mirror.slack == 0.0;
             let mut plan = PathPlan::NONE;
-            if let (Some(_), Some(water)) = (met, &water) {
+            if let (Some(_), Some(water), false) = (met, &water, unlit) {
                 let rippled = water.ripple.z > PUDDLE_WATER_RIPPLED;
                 let mirrors = frame.sky_rays.max(if rippled { PUDDLE_WATER_RAYS } else { 1 });
                 let (drawn, replaced) = (rippled && free, !rippled && free);
@@ -669,7 +685,7 @@ impl ViewPath {
         throughput: Vec3,
     ) {
         let surface = &meeting.surface;
-        let all = meeting.plan.mirrors as f32;
+        let all = meeting.plan.mirrors.max(1) as f32;
         self.radiance += throughput * meeting.direct;
         if meeting.plan.kept {
             self.mirror = PathSlot {

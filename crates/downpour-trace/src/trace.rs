@@ -12,9 +12,10 @@ use downpour_shaders::render::scene::{
 };
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 use crate::capture::{capture_direction, capture_sky, capture_suns};
-use crate::data::RenderFrame;
+use crate::data::{RenderFrame, SceneData};
 use crate::path::{PathSlot, ViewPath, path_lattice_words, path_max};
 use crate::scene::SceneView;
 use crate::temporal::PixelLight;
@@ -283,6 +284,16 @@ impl SceneView<'_> {
     /// The same, and the light of sky and surfaces in it.
     #[must_use]
     pub fn picture_and_light(&self) -> (Vec<[f32; 4]>, PixelLight) {
+        if self.frame.impostors > 0 {
+            let impostor_picture = Arc::new(self.mirrored_picture());
+            let data = SceneData { impostor_picture, ..self.data.clone() };
+            return SceneView { data: &data, frame: self.frame }.pixels_and_light();
+        }
+        self.pixels_and_light()
+    }
+
+    /// The same, with the buffer of mirrored things that it needs.
+    fn pixels_and_light(&self) -> (Vec<[f32; 4]>, PixelLight) {
         let width = self.frame.camera.width;
         let (mut picture, found): (Vec<[f32; 4]>, Vec<TraceFound>) = (0..self.frame.camera.height)
             .into_par_iter()

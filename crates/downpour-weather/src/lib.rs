@@ -94,7 +94,7 @@ pub use sky::{Sky, SkySource, SunSource};
 pub use splashes::Splashes;
 pub use spray::Spray;
 pub use streaks::{StreakLook, Streaks};
-pub use wetness::{RAINED_S, Wetness, WetnessAt};
+pub use wetness::{RAINED_S, WetReflections, Wetness, WetnessAt};
 pub use wind::WindBox;
 
 /// Maximum size of a weather file, in bytes: 4 MiB.

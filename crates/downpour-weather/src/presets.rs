@@ -16,13 +16,18 @@ pub const PRESETS: [(&str, &str); 5] = [
 ];
 
 /// Keys of the same table that exclude each other: where a file gives the first, those of the preset are left out.
-const INSTEAD: [(&str, &str, &[&str]); 9] = [
+const INSTEAD: [(&str, &str, &[&str]); 10] = [
     ("sky", "file", &["color", "zenith_color"]),
     ("sky", "color", &["file", "zenith_color"]),
     ("sky", "zenith_color", &["file", "color"]),
     ("rain", "drops", &["rate_mm_h", "distribution"]),
     ("wetness", "wetness", &["rained_mm", "rained_s", "dried_s", "storage_mm", "drying_s"]),
-    ("wetness", "enabled", &["rained_mm", "rained_s", "dried_s", "storage_mm", "drying_s"]),
+    (
+        "wetness",
+        "enabled",
+        &["rained_mm", "rained_s", "dried_s", "storage_mm", "drying_s", "reflections", "reflection_edge"],
+    ),
+    ("wetness", "reflections", &["reflection_edge"]),
     ("wetness", "rained_s", &["rained_mm"]),
     ("wetness", "rained_mm", &["rained_s"]),
     ("", "wind", &["gusts"]),

@@ -128,6 +128,7 @@ ranges! {
     SprayM: 0.005, 1.0, "0.005 to 1 m";
     SprayDropletMm: 0.05, 1.0, "0.05 to 1 mm";
     DryingS: 1.0, 1e7, "1 to 1e7 s";
+    ReflectionEdge: 0.0, 10.0, "0 to 10";
     DripsPerS: 0.001, 1000.0, "0.001 to 1000 drops per second";
     DripMm: 0.5, 6.4, "0.5 to 6.4 mm";
     PeriodS: 0.1, 1e6, "0.1 to 1e6 s";

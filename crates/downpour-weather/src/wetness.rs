@@ -1,7 +1,7 @@
 //! `[wetness]`: surfaces that the rain makes wet.
 
 use super::fault::Positions;
-use super::quantity::{DryingS, Fraction, In, RainedMm, StorageMm, WetS};
+use super::quantity::{DryingS, Fraction, In, RainedMm, ReflectionEdge, StorageMm, WetS};
 use super::rain::Rain;
 use downpour_drop::wetness::{DRYING_S, STORAGE_M, Wetting};
 use downpour_scene::error::SceneError;
@@ -11,8 +11,24 @@ use serde::Deserialize;
 /// Default time for which the rain has fallen before time 0, s.
 pub const RAINED_S: f64 = 600.0;
 
+/// Default edge coefficient of reflections as billboards.
+const REFLECTION_EDGE: f64 = 0.5;
+
 /// Wetness in which a fixed one ends: the storage is full but for this.
 const DRY_FRACTION: f64 = 1.0e-5;
+
+/// How it is found what wet ground and puddles mirror.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum WetReflections {
+    /// By rays.
+    #[default]
+    Rays,
+    /// As billboards in a buffer of half the picture's size, blurred vertically: N. Tatarchuk & J. Isidoro 2006, section 6.3.
+    Tatarchuk2006 {
+        /// The paper's f0, 0 to 10: a reflection is less toward edges by `saturate(1 - ((1 - n.v) f0)^2)`.
+        edge: f64,
+    },
+}
 
 /// Wetness of the surfaces of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +45,8 @@ pub struct Wetness {
     pub storage_m: f64,
     /// Time constant of drying, s.
     pub drying_s: f64,
+    /// How it is found what wet ground mirrors.
+    pub reflections: WetReflections,
 }
 
 impl Default for Wetness {
@@ -41,6 +59,7 @@ impl Default for Wetness {
             dried_s: 0.0,
             storage_m: STORAGE_M,
             drying_s: DRYING_S,
+            reflections: WetReflections::default(),
         }
     }
 }
@@ -168,6 +187,7 @@ impl Wetness {
             ("wetness.storage_mm", table.storage_mm.is_some()),
             ("wetness.drying_s", table.drying_s.is_some()),
         ];
+        let reflections = reflections(table, positions)?;
         let beside = |other: &str, allowed: &str| match given.iter().find(|(_, given)| *given) {
             Some((key, _)) => Err(positions.bad(key, format!("beside {other}"), allowed)),
             None => Ok(()),
@@ -177,6 +197,9 @@ impl Wetness {
             beside("enabled = false", allowed)?;
             if table.wetness.is_some() {
                 return Err(positions.bad("wetness.wetness", "beside enabled = false", allowed));
+            }
+            if table.reflections.is_some() {
+                return Err(positions.bad("wetness.reflections", "beside enabled = false", allowed));
             }
         }
         if table.wetness.is_some() {
@@ -200,8 +223,32 @@ impl Wetness {
             dried_s: table.dried_s.map_or(default.dried_s, |time| time.0),
             storage_m: table.storage_mm.map_or(default.storage_m, |depth| depth.0 * 1.0e-3),
             drying_s: table.drying_s.map_or(default.drying_s, |time| time.0),
+            reflections,
         })
     }
+}
+
+/// How it is found what wet ground mirrors.
+fn reflections(table: &WetnessTable, positions: &Positions<'_>) -> Result<WetReflections, SceneError> {
+    match (table.reflections, table.reflection_edge) {
+        (Some(ReflectionsName::Tatarchuk2006), edge) => {
+            Ok(WetReflections::Tatarchuk2006 { edge: edge.map_or(REFLECTION_EDGE, |edge| edge.0) })
+        }
+        (_, None) => Ok(WetReflections::Rays),
+        (_, Some(_)) => {
+            let allowed = "reflections = \"tatarchuk-2006\" with it";
+            Err(positions.bad("wetness.reflection_edge", "beside reflections by rays", allowed))
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+enum ReflectionsName {
+    #[serde(rename = "rays")]
+    Rays,
+    #[serde(rename = "tatarchuk-2006")]
+    Tatarchuk2006,
 }
 
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
@@ -215,4 +262,6 @@ pub(super) struct WetnessTable {
     dried_s: Option<In<WetS>>,
     storage_mm: Option<In<StorageMm>>,
     drying_s: Option<In<DryingS>>,
+    reflections: Option<ReflectionsName>,
+    reflection_edge: Option<In<ReflectionEdge>>,
 }

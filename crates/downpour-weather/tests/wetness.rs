@@ -82,5 +82,21 @@ fn values_out_of_range_and_contradictions_are_refused() {
     says("[wetness]\nrained_s = 5\nrained_mm = 1", "wetness.rained_s: beside rained_mm");
     says("[wetness]\nwetness = 0.5\nstorage_mm = 1", "wetness.storage_mm: beside a wetness that is fixed");
     says("[wetness]\nenabled = false\nwetness = 0.5", "wetness.wetness: beside enabled = false");
+    says("[wetness]\nenabled = false\nreflections = \"rays\"", "wetness.reflections: beside enabled = false");
+    says("[wetness]\nreflections = \"impostors\"", "wetness.reflections");
+    says("[wetness]\nreflections = \"tatarchuk-2006\"\nreflection_edge = 11", "0 to 10");
+    says("[wetness]\nreflection_edge = 1", "wetness.reflection_edge: beside reflections by rays");
     says("[rain]\nrate_mm_h = 0\n[wetness]\nrained_s = 60", "wetness.rained_s: a time of a rain of 0 mm/h");
+}
+
+#[test]
+fn reflections_are_by_rays_or_by_name() {
+    use downpour_weather::WetReflections::{Rays, Tatarchuk2006};
+
+    let of = |text: &str| Weather::parse("w.toml", text).unwrap().wetness.reflections;
+    assert_eq!(of("[wetness]"), Rays);
+    assert_eq!(of("[wetness]\nreflections = \"rays\""), Rays);
+    let named = "[wetness]\nreflections = \"tatarchuk-2006\"";
+    assert_eq!(of(named), Tatarchuk2006 { edge: 0.5 });
+    assert_eq!(of(&format!("{named}\nreflection_edge = 2")), Tatarchuk2006 { edge: 2.0 });
 }

@@ -1,6 +1,7 @@
 //! `wgsl/render/path.wgsl`: what a ray of the camera sees. Twin: `downpour_trace::path`.
 
 use super::glazing::GLAZING;
+use super::impostor::IMPOSTOR;
 use super::puddle_water::PUDDLE_WATER;
 use super::scatter::SCATTER;
 use super::scene::{DATA, SCENE, SKY, SURFACE};
@@ -111,5 +112,6 @@ pub static PATH: Module = Module {
         &OPTICS,
         &WET,
         &GLAZING,
+        &IMPOSTOR,
     ],
 };

@@ -162,6 +162,8 @@ shared_constants! {
         SKYLIGHT_LOOSE_ROUGHNESS: f32 = 0.45;
         /// Invocations along an edge of a workgroup.
         SPACING_GROUP: u32 = 8;
+        /// Value of `suns_out` of a capture that leaves out all that shines by itself.
+        SCENE_ALL_OUT: u32 = 2;
         /// Projection of a trace: the picture.
         SCENE_PICTURE: u32 = 0;
         /// Samples of the sky along an edge of a texel of the capture that shows nothing else.
@@ -263,8 +265,8 @@ pub static TRACE_SAMPLE_KERNEL: Kernel =
 pub static TRACE_SEEN_KERNEL: Kernel =
     Kernel { entry: "main_trace_seen", module: &TRACE, workgroup: [8, 8, 1] };
 
-/// Storage buffers of `main_trace`: one more than WebGPU's default limit. A device with fewer takes the samples one by one.
-pub const TRACE_STORAGE_BUFFERS: u32 = 9;
+/// Storage buffers of `main_trace`: two more than WebGPU's default limit. A device with fewer takes the samples one by one.
+pub const TRACE_STORAGE_BUFFERS: u32 = 10;
 
 /// Bytes of a pixel that `main_trace_sample` keeps from sample to sample (`TraceState`).
 pub const TRACE_STATE_BYTES: u64 = 560;

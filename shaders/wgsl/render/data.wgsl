@@ -19,7 +19,7 @@ struct RenderFrame {
     ray_fraction: f32,
     // Projection that is traced: SCENE_PICTURE, SCENE_OCTAHEDRAL or SCENE_PERSPECTIVE.
     projection: u32,
-    // 1: the capture leaves parallel light out.
+    // 1: the capture leaves parallel light out, and lamps. SCENE_ALL_OUT: all that shines by itself.
     suns_out: u32,
     // Row of the table where puddles begin, and how many there are.
     puddles: u32,
@@ -39,6 +39,12 @@ struct RenderFrame {
     ray_row: u32,
     // Row of the table where rain on panes of the scene begins; 0: they are dry.
     glazing: u32,
+    // Number of billboards in the buffer of mirrored things, and one; 0: what wet surfaces mirror is found by rays.
+    impostors: u32,
+    // The paper's f0 of reflections from that buffer.
+    impostor_edge: f32,
+    unused_a: u32,
+    unused_b: u32,
     // Width, height and first texel of each level of the sky.
     sky_levels: array<vec4u, SCENE_SKY_LEVELS>,
     // Irradiance of the sky over pi as spherical harmonics of degree 2.

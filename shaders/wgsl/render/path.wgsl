@@ -149,12 +149,8 @@ fn path_open(surface: Surface) -> vec3f {
     return vec3f(1.0 - cover) + surface.diffuse * (surface.transmission * cover);
 }
 
-// The rays of a surface that shows itself to a viewer, to whom a pixel is `footprint` wide there. `told`: means over
-// neighboring pixels are taken of what they find; `free`: of what the gloss shows, too.
-fn path_plan(surface: Surface, view: vec3f, footprint: f32, told: bool, free: bool) -> PathPlan {
-    let cosine = max(dot(surface.normal, view), 0.0);
-    // Neighboring pixels mirror directions as far apart as this.
-    let spread = 2.0 * surface.bend * footprint / max(cosine, 0.2);
+// Fraction of the light that the gloss of a surface shows to a viewer at a cosine.
+fn path_gloss(surface: Surface, cosine: f32) -> vec3f {
     let sharp = surface.roughness < PATH_SHARP;
     var gloss = scatter_gloss(surface.normal_reflectance, surface.roughness, cosine, sharp) * surface.occlusion;
     if WET_SURFACES && surface.film > 0.0 {
@@ -162,6 +158,27 @@ fn path_plan(surface: Surface, view: vec3f, footprint: f32, told: bool, free: bo
         let coat = wet_coat(surface.normal_reflectance, surface.roughness, cosine, false);
         gloss += (coat - gloss) * surface.film;
     }
+    return gloss;
+}
+
+// A surface without its gloss, which is shown otherwise.
+fn path_matte(surface: Surface, gloss: vec3f) -> Surface {
+    var matte = surface;
+    matte.diffuse = surface.diffuse * (vec3f(1.0) - gloss);
+    matte.normal_reflectance = vec3f(0.0);
+    matte.roughness = 1.0;
+    matte.film = 0.0;
+    return matte;
+}
+
+// The rays of a surface that shows itself to a viewer, to whom a pixel is `footprint` wide there. `told`: means over
+// neighboring pixels are taken of what they find; `free`: of what the gloss shows, too.
+fn path_plan(surface: Surface, view: vec3f, footprint: f32, told: bool, free: bool) -> PathPlan {
+    let cosine = max(dot(surface.normal, view), 0.0);
+    // Neighboring pixels mirror directions as far apart as this.
+    let spread = 2.0 * surface.bend * footprint / max(cosine, 0.2);
+    let sharp = surface.roughness < PATH_SHARP;
+    let gloss = path_gloss(surface, cosine);
     let body = path_albedo(surface);
     let rays = render_frame.sky_rays;
     let drawn = told && free && !sharp && rays > 0u;
@@ -367,7 +384,7 @@ fn path_show_water(
 ) -> ViewPath {
     var shown = path;
     let surface = meeting.surface;
-    let all = f32(meeting.plan.mirrors);
+    let all = f32(max(meeting.plan.mirrors, 1u));
     shown.radiance += throughput * meeting.direct;
     if meeting.plan.kept {
         shown.mirror = PathSlot(
@@ -592,6 +609,18 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                         path.facet = found.facet;
                         path.position = found.position;
                     }
+                    if IMPOSTOR_REFLECTIONS && !under && render_frame.projection == SCENE_PICTURE {
+                        if SCENE_WET && of_water {
+                            let fraction = path_water_fraction(ripple, -towards);
+                            path.radiance += throughput * impostor_mirrored(found.facet, found.normal, towards) * fraction;
+                            found.flags |= SCENE_UNLIT;
+                        } else if found.film > 0.0 && found.porosity > 0.0 {
+                            // What is smooth shows its own rays, as it does when it is dry.
+                            let gloss = path_gloss(found, max(-dot(found.normal, towards), 0.0));
+                            path.radiance += throughput * impostor_mirrored(found.facet, found.normal, towards) * gloss;
+                            found = path_matte(found, gloss);
+                        }
+                    }
                     near = hit.distance + render_frame.nearest;
                     meeting.told = path.base.slack == 0.0 && path_cover(found) == 1.0 && found.transmission == 0.0;
                 } else {
@@ -608,7 +637,8 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                 var lit = found.diffuse;
                 if !unlit {
                     let is_lamp = (found.flags & SCENE_LAMP_GLASS) != 0u;
-                    if is_lamp && render_frame.projection != SCENE_PICTURE && render_frame.suns_out > 0u {
+                    let all_out = render_frame.suns_out == SCENE_ALL_OUT;
+                    if (is_lamp || all_out) && render_frame.projection != SCENE_PICTURE && render_frame.suns_out > 0u {
                         // Drops are lit by lamps on their own.
                         emission = vec3f(0.0);
                     }
@@ -636,7 +666,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     meeting.surface = found;
                     meeting.direct = lit;
                     let free = path.mirror.slack == 0.0;
-                    if SCENE_WET && of_water {
+                    if SCENE_WET && of_water && !unlit {
                         let rippled = ripple.z > PUDDLE_WATER_RIPPLED;
                         meeting.plan.mirrors = max(render_frame.sky_rays, select(1u, PUDDLE_WATER_RAYS, rippled));
                         meeting.plan.gloss = vec3f(1.0);

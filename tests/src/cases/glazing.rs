@@ -328,6 +328,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
 
 const OVERRIDES: &[(&str, f64)] = &[
     ("GLAZING_PANES", 1.0),
+    ("IMPOSTOR_REFLECTIONS", 0.0),
     ("SCENE_PANE", 0.0),
     ("SCENE_SHINES", 0.0),
     ("SCENE_WET", 0.0),

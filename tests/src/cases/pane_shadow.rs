@@ -40,7 +40,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         name,
         kernel: &TRACE_KERNEL,
         with: &[],
-        overrides: &[("GLAZING_PANES", 0.0), ("SCENE_PANE", 1.0), ("SCENE_SHINES", 0.0), ("SCENE_WET", 0.0), ("WET_SURFACES", 0.0)],
+        overrides: &[("GLAZING_PANES", 0.0), ("IMPOSTOR_REFLECTIONS", 0.0), ("SCENE_PANE", 1.0), ("SCENE_SHINES", 0.0), ("SCENE_WET", 0.0), ("WET_SURFACES", 0.0)],
         text: None,
         tol: Tol::relative(
             4.0e-3,

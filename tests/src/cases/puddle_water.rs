@@ -187,6 +187,17 @@ fn water_with(
     sky_rays: u32,
     rings: Option<&RingRows>,
 ) -> Result<Run, GpuError> {
+    lay(&mut scene, puddles, rings);
+    picture(gpu, &scene, eye, sky_rays)
+}
+
+/// Lays the puddles of the cases on the ground of the scene of the other cases.
+pub(super) fn laid(scene: &mut SceneData) {
+    lay(scene, &maps(), None);
+}
+
+/// Lays puddles with ripples on a scene.
+fn lay(scene: &mut SceneData, puddles: &[(PuddleMap, PuddleLook)], rings: Option<&RingRows>) {
     let finest = (0..128 * 128u32).map(|i| {
         let [a, b, ..] = rng_pcg4d([i, 4, 5, 6]).map(|word| rng_unit(word) - 0.5);
         let [x, y] = [(i % 128) as f32, (i / 128) as f32];
@@ -200,7 +211,6 @@ fn water_with(
         shift: Vec3::ZERO,
         rings,
     });
-    picture(gpu, &scene, eye, sky_rays)
 }
 
 const WATER: Tol = Tol::relative(
@@ -218,6 +228,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         with: &[],
         overrides: &[
             ("GLAZING_PANES", 0.0),
+            ("IMPOSTOR_REFLECTIONS", 0.0),
             ("SCENE_PANE", 0.0),
             ("SCENE_SHINES", 0.0),
             ("SCENE_WET", 1.0),

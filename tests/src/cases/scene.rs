@@ -485,6 +485,7 @@ pub(super) fn picture_by(
 /// A dry scene of which nothing shines.
 pub(super) const DULL: &[(&str, f64)] = &[
     ("GLAZING_PANES", 0.0),
+    ("IMPOSTOR_REFLECTIONS", 0.0),
     ("SCENE_PANE", 0.0),
     ("SCENE_SHINES", 0.0),
     ("SCENE_WET", 0.0),
@@ -494,6 +495,7 @@ pub(super) const DULL: &[(&str, f64)] = &[
 /// A dry scene of which something does.
 const SHINING: &[(&str, f64)] = &[
     ("GLAZING_PANES", 0.0),
+    ("IMPOSTOR_REFLECTIONS", 0.0),
     ("SCENE_PANE", 0.0),
     ("SCENE_SHINES", 1.0),
     ("SCENE_WET", 0.0),

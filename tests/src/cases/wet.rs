@@ -107,9 +107,10 @@ const PICTURE: Tol = Tol::relative(
 .with_outliers(6.0e-3);
 
 /// Overrides of a wet scene of which something shines, or nothing.
-const fn wet(shines: f64) -> [(&'static str, f64); 5] {
+const fn wet(shines: f64) -> [(&'static str, f64); 6] {
     [
         ("GLAZING_PANES", 0.0),
+        ("IMPOSTOR_REFLECTIONS", 0.0),
         ("SCENE_PANE", 0.0),
         ("SCENE_SHINES", shines),
         ("SCENE_WET", 0.0),

@@ -51,6 +51,9 @@ pub(crate) struct Options {
     /// Rays to the sky per sample of our pictures of scenes, instead of the command's default.
     #[arg(long, value_name = "N", value_parser = within(1..=64_u32))]
     pub(super) sky_rays: Option<u32>,
+    /// Samples along each side of a pixel of our pictures of scenes, instead of the command's default.
+    #[arg(long, value_name = "N", value_parser = within(1..=8_u32))]
+    pub(super) scene_samples: Option<u32>,
     /// Fineness of the mesh, 20 * 4^N triangles.
     #[arg(long, value_name = "N", default_value = "7", value_parser = within(3..=8_u32))]
     pub(super) subdivisions: u32,

@@ -59,8 +59,9 @@ pub(super) fn compare(
     }
     let [width, height] = SIZE;
     let rays = options.sky_rays.map_or(String::new(), |rays| format!(" --sky-rays {rays}"));
+    let samples = options.scene_samples.map_or(String::new(), |samples| format!(" --samples {samples}"));
     let text = format!(
-        "# Scenes and Mitsuba\n\n`downpour render --rate 0{rays}` at {width} x {height} against Mitsuba's path tracer, on \
+        "# Scenes and Mitsuba\n\n`downpour render --rate 0{rays}{samples}` at {width} x {height} against Mitsuba's path tracer, on \
          surfaces. `noise`: FLIP between two halves of Mitsuba's own samples. `mirrored`: our picture the wrong way round, which \
          has to be seen.\n\n\
          | scene | surfaces | mean FLIP | luminance | noise | FLIP mirrored |\n|---|---|---|---|---|---|\n{}\n",
@@ -169,6 +170,7 @@ impl Scene {
         let status = command
             .args(["--quiet", "--overwrite", "--asset-root", "/"])
             .args(options.sky_rays.map(|rays| format!("--sky-rays={rays}")))
+            .args(options.scene_samples.map(|samples| format!("--samples={samples}")))
             .arg(&weather)
             .arg("--output")
             .arg(&ours)

@@ -6,7 +6,7 @@ use downpour_gpu::{BufferSource, Dispatch, GpuError, wgpu};
 use downpour_render::gpu::{LightingOnGpu, PlateOnGpu, RainPass, RainPipeline};
 use downpour_render::rain::Rain;
 
-use super::scene::{SceneOnGpu, ScenePipeline, SceneRays};
+use super::scene::{RayBuffers, SceneOnGpu, ScenePipeline, SceneRays};
 use crate::capture::environment_frame;
 use crate::data::RenderFrame;
 use crate::trace::TraceAmbient;
@@ -54,11 +54,12 @@ impl ScenePipeline {
         let traced: Vec<_> = traced.into_iter().flat_map(|rows| self.parts(rows, width)).collect();
         let most = traced.iter().map(|rows| rows.len() as u32).max().unwrap_or(0);
         let states = if most > 0 { self.states(buffers, &of_map.camera, most)? } else { None };
+        let to = [&environment, &nothing, &nothing_else];
+        let of_rays = RayBuffers { mirrored: None, to, states: states.as_ref() };
         let mut finest = Vec::new();
         for rows in traced {
             let of_rows = RenderFrame { first_row: rows.start, ..of_map };
-            let to = [&environment, &nothing, &nothing_else];
-            finest.push(self.rays(buffers, scene, &of_rows, to, states.as_ref(), rows.len() as u32)?);
+            finest.push(self.rays(buffers, scene, &of_rows, of_rays, rows.len() as u32)?);
         }
         let lighting = scene.lighting(buffers, frame)?;
         Ok(ScenePlate { finest, environment, lighting })

@@ -13,6 +13,7 @@ use downpour_lattice::gpu::puddle::PuddleSlopesPass;
 use downpour_render::camera::Camera;
 use downpour_render::gpu::LightingOnGpu;
 
+use super::impostor::{ImpostorPass, ImpostorPipeline};
 use super::ripples::RipplesOnGpu;
 use super::temporal::LightOnGpu;
 use crate::data::{RenderFrame, SceneData};
@@ -61,6 +62,7 @@ pub struct ScenePipeline {
     /// By what a scene has: [`SceneParts`]. Made for the first scene that has it.
     tracers: [OnceLock<ComputeKernel>; SceneParts::COUNT],
     skylight: ComputeKernel,
+    impostors: ImpostorPipeline,
 }
 
 /// A scene on the device.
@@ -96,7 +98,7 @@ impl ScenePipeline {
     }
 
     fn made(gpu: &Gpu, samples: SampleDispatches) -> Result<Self, GpuError> {
-        let tracers: [OnceLock<ComputeKernel>; SceneParts::COUNT] = Default::default();
+        let tracers: [OnceLock<ComputeKernel>; SceneParts::COUNT] = std::array::from_fn(|_| OnceLock::new());
         let plain = SceneParts::default();
         made_once(&tracers[plain.index()], || tracer(gpu, samples, plain))?;
         let skylight = ComputeKernel::new(gpu, &SKYLIGHT_KERNEL, &[])?;
@@ -104,7 +106,14 @@ impl ScenePipeline {
             SampleDispatches::Together => None,
             SampleDispatches::Apart => Some(ComputeKernel::new(gpu, &TRACE_SEEN_KERNEL, &[])?),
         };
-        Ok(Self { gpu: gpu.clone(), samples, seen, tracers, skylight })
+        Ok(Self {
+            gpu: gpu.clone(),
+            samples,
+            seen,
+            tracers,
+            skylight,
+            impostors: ImpostorPipeline::default(),
+        })
     }
 
     /// The kernel that traces a frame, with what the scene has and without what it has not.
@@ -173,11 +182,16 @@ impl ScenePipeline {
         let rows = rows.clamp(8, frame.camera.height.max(8)).next_multiple_of(8 * frame.ray_spacing);
         let (mut bands, mut filters) = (Vec::new(), Vec::new());
         let states = self.states(buffers, &frame.camera, rows.min(frame.camera.height))?;
+        let impostors = self.impostors.prepare(&self.gpu, buffers, &scene.of, frame)?;
+        let of_rays = RayBuffers {
+            mirrored: impostors.as_ref().map(ImpostorPass::drawn),
+            to: [&picture, &found_light, &of_others],
+            states: states.as_ref(),
+        };
         for first_row in (0..frame.camera.height).step_by(rows as usize) {
             let frame = RenderFrame { first_row, ..*frame };
             let rows = rows.min(frame.camera.height - first_row);
-            let to = [&picture, &found_light, &of_others];
-            bands.push(self.rays(buffers, scene, &frame, to, states.as_ref(), rows)?);
+            bands.push(self.rays(buffers, scene, &frame, of_rays, rows)?);
         }
         let means = |label| buffers.buffer(label, pixels * 32, storage);
         // The last mean is in the second; after it come the other surfaces.
@@ -197,7 +211,7 @@ impl ScenePipeline {
         }
         let [_, means] = means;
         let light = LightOnGpu { ambient: found_light, means };
-        Ok(ScenePass { pipeline: self, bands, filters, picture, light })
+        Ok(ScenePass { pipeline: self, impostors, bands, filters, picture, light })
     }
 
     /// Ranges of rows of a picture, none larger than what a device takes at once that keeps what pixels have so far.
@@ -222,29 +236,31 @@ impl ScenePipeline {
         self.seen.as_ref().map(|_| buffers.buffer("samples of pixels", bytes, storage)).transpose()
     }
 
-    /// Prepares the rays of `rows` rows of pixels, which leave what they find in `to`: the picture, and the light that goes to the
-    /// filter, of the first surfaces and of others. `states`: [`ScenePipeline::states`].
+    /// Prepares the rays of `rows` rows of pixels.
     pub(super) fn rays(
         &self,
         buffers: &impl BufferSource,
         scene: &SceneOnGpu,
         frame: &RenderFrame,
-        to: [&wgpu::Buffer; 3],
-        states: Option<&wgpu::Buffer>,
+        RayBuffers { mirrored, to, states }: RayBuffers<'_>,
         rows: u32,
     ) -> Result<SceneRays<'_>, GpuError> {
         let tracer = self.tracer(frame)?;
         let groups = frame.pixels_that_look().workgroups([frame.camera.width, rows]);
+        // The kernel has the binding also where it does not read it.
+        let mirrored = (11, mirrored.unwrap_or(&scene.sky));
         let Some((seen, states)) = self.seen.as_ref().zip(states) else {
             let uniform = buffers.uniform("frame", frame)?;
-            let bound =
-                tracer.bind_at(buffers, scene.buffers(&uniform).into_iter().chain(TO.into_iter().zip(to)))?;
+            let bound = tracer.bind_at(
+                buffers,
+                scene.buffers(&uniform).into_iter().chain([mirrored]).chain(TO.into_iter().zip(to)),
+            )?;
             return Ok(SceneRays { turns: vec![(tracer, bound)], groups });
         };
         let mut turns = Vec::new();
         for turn in 0..frame.grid * frame.grid {
             let uniform = buffers.uniform("frame", &RenderFrame { turn, ..*frame })?;
-            let bound = scene.buffers(&uniform).into_iter().chain([(9, states)]);
+            let bound = scene.buffers(&uniform).into_iter().chain([mirrored, (9, states)]);
             turns.push((tracer, tracer.bind_at(buffers, bound)?));
         }
         let uniform = buffers.uniform("frame", frame)?;
@@ -257,6 +273,17 @@ impl ScenePipeline {
 /// Workgroups for some rows of a picture.
 fn groups(camera: &Camera, rows: u32) -> [u32; 3] {
     [camera.width.div_ceil(8), rows.div_ceil(8), 1]
+}
+
+/// Buffers of the rays of a frame, besides its scene's.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RayBuffers<'a> {
+    /// What wet surfaces mirror as billboards, if the frame has some.
+    pub(super) mirrored: Option<&'a wgpu::Buffer>,
+    /// What rays find: the picture, and the light that goes to the filter, of the first surfaces and of others.
+    pub(super) to: [&'a wgpu::Buffer; 3],
+    /// [`ScenePipeline::states`].
+    pub(super) states: Option<&'a wgpu::Buffer>,
 }
 
 /// Rays of some rows of pixels, ready to be traced.
@@ -282,11 +309,12 @@ struct SceneParts {
     is_wet: bool,
     shines: bool,
     is_glazed: bool,
+    has_impostors: bool,
 }
 
 impl SceneParts {
     /// Number of combinations.
-    const COUNT: usize = 32;
+    const COUNT: usize = 64;
 
     fn of(frame: &RenderFrame) -> Self {
         Self {
@@ -295,12 +323,14 @@ impl SceneParts {
             is_wet: frame.wetness > 0,
             shines: frame.emitters > 0,
             is_glazed: frame.glazing > 0,
+            has_impostors: frame.impostors > 0,
         }
     }
 
     /// Index of the combination, below [`SceneParts::COUNT`].
     fn index(self) -> usize {
-        let flags = [self.has_puddles, self.has_pane, self.is_wet, self.shines, self.is_glazed];
+        let flags =
+            [self.has_puddles, self.has_pane, self.is_wet, self.shines, self.is_glazed, self.has_impostors];
         flags.iter().rev().fold(0, |index, &flag| index << 1 | usize::from(flag))
     }
 }
@@ -314,6 +344,7 @@ fn tracer(gpu: &Gpu, samples: SampleDispatches, parts: SceneParts) -> Result<Com
         ("WET_SURFACES", number(parts.is_wet)),
         ("SCENE_SHINES", number(parts.shines)),
         ("GLAZING_PANES", number(parts.is_glazed)),
+        ("IMPOSTOR_REFLECTIONS", number(parts.has_impostors)),
     ];
     let kernel = match samples {
         SampleDispatches::Together => &TRACE_KERNEL,
@@ -326,6 +357,7 @@ fn tracer(gpu: &Gpu, samples: SampleDispatches, parts: SceneParts) -> Result<Com
 #[derive(Debug)]
 pub struct ScenePass<'a> {
     pipeline: &'a ScenePipeline,
+    impostors: Option<ImpostorPass<'a>>,
     bands: Vec<SceneRays<'a>>,
     filters: Vec<(wgpu::BindGroup, [u32; 3])>,
     picture: wgpu::Buffer,
@@ -339,10 +371,11 @@ impl ScenePass<'_> {
         [self.rays(), self.filters()].concat()
     }
 
-    /// Those that trace.
+    /// Those that trace, after those that draw what they look up.
     #[must_use]
     pub fn rays(&self) -> Vec<Dispatch<'_>> {
-        self.bands.iter().flat_map(SceneRays::dispatches).collect()
+        let mirrored = self.impostors.iter().flat_map(ImpostorPass::dispatches);
+        mirrored.chain(self.bands.iter().flat_map(SceneRays::dispatches)).collect()
     }
 
     /// Those that filter the light of the sky, after them.

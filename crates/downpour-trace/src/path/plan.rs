@@ -137,7 +137,31 @@ pub(super) fn path_secondary(surface: &Surface, roughness: f32) -> Surface {
     }
 }
 
+/// A surface without its gloss, which is shown otherwise.
+pub(super) fn path_matte(surface: &Surface, gloss: Vec3) -> Surface {
+    Surface {
+        diffuse: surface.diffuse * (Vec3::ONE - gloss),
+        normal_reflectance: Vec3::ZERO,
+        roughness: 1.0,
+        film: 0.0,
+        ..*surface
+    }
+}
+
 impl SceneView<'_> {
+    /// Fraction of the light that the gloss of a surface shows to a viewer at a cosine.
+    pub(super) fn path_gloss(&self, surface: &Surface, cosine: f32) -> Vec3 {
+        let sharp = surface.roughness < PATH_SHARP;
+        let mut gloss =
+            scatter_gloss(surface.normal_reflectance, surface.roughness, cosine, sharp) * surface.occlusion;
+        if surface.film > 0.0 {
+            // What is above a film is open to the sky.
+            let coat = self.data.wet_coat(surface.normal_reflectance, surface.roughness, cosine, false);
+            gloss += (coat - gloss) * surface.film;
+        }
+        gloss
+    }
+
     /// The rays of a surface that shows itself to a viewer, to whom a pixel is `footprint` wide there. `told`: means over
     /// neighboring pixels are taken of what they find; `free`: of what the gloss shows, too.
     pub(super) fn path_plan(
@@ -152,13 +176,7 @@ impl SceneView<'_> {
         // Neighboring pixels mirror directions as far apart as this.
         let spread = 2.0 * surface.bend * footprint / cosine.max(0.2);
         let sharp = surface.roughness < PATH_SHARP;
-        let mut gloss =
-            scatter_gloss(surface.normal_reflectance, surface.roughness, cosine, sharp) * surface.occlusion;
-        if surface.film > 0.0 {
-            // What is above a film is open to the sky.
-            let coat = self.data.wet_coat(surface.normal_reflectance, surface.roughness, cosine, false);
-            gloss += (coat - gloss) * surface.film;
-        }
+        let gloss = self.path_gloss(surface, cosine);
         let body = path_albedo(surface);
         let rays = self.frame.sky_rays;
         let drawn = told && free && !sharp && rays > 0;

@@ -26,7 +26,7 @@ const HOLLOW_VIEW: &str =
     "[camera]\nposition_m = [0.9, 0.9, -15.6]\nlook_at_m = [0.95, 0.02, -18.2]\nfov_deg = 40\n";
 
 /// All of them.
-pub(super) const EFFECTS: [Effect; 17] = [
+pub(super) const EFFECTS: [Effect; 18] = [
     Effect {
         name: "rain",
         title: "Drops, streaks and unresolved rain",
@@ -66,6 +66,16 @@ pub(super) const EFFECTS: [Effect; 17] = [
         both: "",
         off: "[wetness]\nenabled = false\n",
         on: "[wetness]\nenabled = true\n",
+    },
+    Effect {
+        name: "reflections",
+        title: "Streaky reflections by impostors (section 6.3)",
+        base: "night.toml",
+        time_s: "1",
+        without: &[],
+        both: "[rain]\nrate_mm_h = 8\n",
+        off: "[wetness]\nreflections = \"rays\"\n",
+        on: "[wetness]\nreflections = \"tatarchuk-2006\"\n",
     },
     Effect {
         name: "puddles",

@@ -1,0 +1,63 @@
+//! What wet surfaces mirror as billboards: data. How they are found and drawn is in [`impostor`](crate::impostor).
+
+use std::sync::Arc;
+
+use downpour_bvh::BvhNode;
+use downpour_render::camera::Viewpoint;
+use glam::{Vec2, Vec3};
+
+/// Something that shines, mirrored in level ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Billboard {
+    /// Its middle, below the ground.
+    pub middle: Vec3,
+    /// Half its width and height, m.
+    pub half: Vec2,
+    /// Radiance.
+    pub radiance: Vec3,
+}
+
+/// What the wet surfaces of a frame mirror.
+#[derive(Clone, Debug)]
+pub struct Impostors {
+    /// Edge coefficient of reflections: the paper's f0.
+    pub edge: f32,
+    /// Radiance around, without what shines: texels of an octahedral map, rows from the top.
+    pub around: Vec<Vec3>,
+    /// What shines, the farthest first.
+    pub billboards: Vec<Billboard>,
+    /// What it was found for.
+    pub(crate) of: Basis,
+}
+
+/// What billboards depend on.
+#[derive(Clone, Debug)]
+pub(crate) struct Basis {
+    pub(crate) nodes: Arc<Vec<BvhNode>>,
+    pub(crate) sky: Arc<Vec<[f32; 4]>>,
+    pub(crate) lights: Vec<[u32; 4]>,
+    pub(crate) viewpoint: Viewpoint,
+}
+
+impl Basis {
+    /// True if it is the same.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.nodes, &other.nodes)
+            && Arc::ptr_eq(&self.sky, &other.sky)
+            && self.lights == other.lights
+            && self.viewpoint == other.viewpoint
+    }
+}
+
+impl Impostors {
+    /// The rows that the device reads.
+    #[must_use]
+    pub fn rows(&self) -> Vec<[f32; 4]> {
+        let around = self.around.iter().map(|light| [light.x, light.y, light.z, 0.0]);
+        let billboards = self.billboards.iter().flat_map(|billboard| {
+            let (middle, light) = (billboard.middle, billboard.radiance);
+            [[middle.x, middle.y, middle.z, billboard.half.x], [light.x, light.y, light.z, billboard.half.y]]
+        });
+        around.chain(billboards).collect()
+    }
+}
