@@ -3,7 +3,7 @@
 
 use downpour_math::ops;
 use downpour_shaders::render::scene::{
-    SCENE_MIRROR_U, SCENE_MIRROR_V, SCENE_REPEAT_U, SCENE_REPEAT_V, SCENE_ROOTED,
+    SCENE_MIRROR_U, SCENE_MIRROR_V, SCENE_REPEAT_U, SCENE_REPEAT_V, SCENE_ROOTED, TEXTURE_SPACE, TEXTURE_TENT,
 };
 use glam::{Vec2, Vec4, Vec4Swizzles as _};
 
@@ -40,23 +40,30 @@ pub struct TextureTaps {
     pub line: Vec2,
     /// Their number.
     pub taps: f32,
-    /// Width of each, texels; at least 1.
-    pub width: f32,
+    /// Edge of the texels that each of them interpolates, in texels of the finest level; at least 1.
+    pub texel: f32,
 }
 
-/// Samples in place of an ellipse with two diameters in texels: `most` of them at most. They are as far apart as gives the line and the
-/// widths together the ellipse's extent, so that nothing jumps where a sample is added.
+/// Samples in place of an ellipse with two diameters in texels: `most` of them at most. They are no farther apart than the texels reach that
+/// each interpolates, and have together the ellipse's variance.
 #[must_use]
 pub fn texture_taps(along: Vec2, across: Vec2, most: f32) -> TextureTaps {
     let (first, second) = (along.dot(along), across.dot(across));
     let length = first.max(second).sqrt();
-    let narrow = first.min(second).sqrt().max(1.0);
-    let taps = (length / narrow).ceil().clamp(1.0, most.max(1.0));
-    let width = narrow.max(length / taps);
-    let rest = (1.0 - width * width / (length * length).max(1.0e-20)).max(0.0).sqrt();
-    let line = if taps > 1.0 { rest } else { 0.0 };
+    let reach = TEXTURE_SPACE * most;
+    let shortest = if most > 1.0 {
+        length / (TEXTURE_TENT * TEXTURE_TENT + reach * reach).sqrt()
+    } else {
+        length / TEXTURE_TENT
+    };
+    let texel = (first.min(second).sqrt() / TEXTURE_TENT).max(shortest).max(1.0);
+    let wide = TEXTURE_TENT * texel;
+    let line = (length * length - wide * wide).max(0.0).sqrt();
+    let taps = (line / (TEXTURE_SPACE * texel)).ceil().clamp(1.0, most.max(1.0));
+    // Samples in the middle of their parts have less variance than the line.
+    let part = line / (length.max(1.0e-20) * (1.0 - 1.0 / (taps * taps).max(2.0)).sqrt());
     let longer = if first >= second { along } else { across };
-    TextureTaps { line: longer * line, taps, width }
+    TextureTaps { line: longer * if taps > 1.0 { part } else { 0.0 }, taps, texel }
 }
 
 /// Two neighbors, the `i`-th and the next, brought into the texture: indices of texels along an edge of `n`. Integers are divided
@@ -112,8 +119,8 @@ impl SceneData {
         let inside = moved.clamp(Vec2::splat(-4096.0), Vec2::splat(4096.0));
         let size = Vec2::new(image[0] as f32, image[1] as f32);
         let [along, across] = [footprint.along, footprint.across].map(|axis| turned(chosen(axis)) * size);
-        let TextureTaps { line, taps, width } = texture_taps(along, across, footprint.taps);
-        let lod = ops::log2(width).clamp(0.0, (image[3] - 1) as f32);
+        let TextureTaps { line, taps, texel } = texture_taps(along, across, footprint.taps);
+        let lod = ops::log2(texel).clamp(0.0, (image[3] - 1) as f32);
         let (mut first, mut width, mut height) = (image[2], image[0] as i32, image[1] as i32);
         let level = lod as u32;
         for _ in 0..level {

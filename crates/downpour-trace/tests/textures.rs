@@ -58,8 +58,8 @@ fn seen(scene: &SceneData, eye: Vec3, direction: Vec3, taps: f32) -> f32 {
     scene.surface_at(&hit, eye, direction, CONE, taps).diffuse.x
 }
 
-/// The mean of texels over what a pixel sees, by 32 x 32 rays through it.
-fn mean(texels: &[f32], eye: Vec3, direction: Vec3) -> f32 {
+/// The mean of the squares over what a pixel sees, by 32 x 32 rays through it.
+fn mean(eye: Vec3, direction: Vec3) -> f32 {
     let right = direction.cross(Vec3::Y).normalize();
     let up = right.cross(direction);
     let mut sum = 0.0;
@@ -67,30 +67,41 @@ fn mean(texels: &[f32], eye: Vec3, direction: Vec3) -> f32 {
         let [x, y] = [k % 32, k / 32].map(|i| (f32::from(i) + 0.5) / 32.0 - 0.5);
         let towards = direction + (right * x + up * y) * CONE;
         let at = eye - towards * (eye.y / towards.y);
-        let texel = Vec2::new(at.x, at.z) * (EDGE as f32 / METERS);
-        let [u, v] = [texel.x, texel.y].map(|at| (at.floor() as i32).rem_euclid(EDGE as i32) as usize);
-        sum += texels[v * EDGE as usize + u];
+        sum += square(at.x / METERS, at.z / METERS);
     }
     sum / 1024.0
 }
 
-/// Texels that are black or white by chance, in squares of four.
+/// Squares along an edge of the texture: no whole number of texels, as nothing is in a texture of the world.
+const SQUARES: u32 = 53;
+
+/// A square, black or white by chance, at coordinates of which the texture takes 0 to 1.
+fn square(u: f32, v: f32) -> f32 {
+    let [x, y] = [u, v].map(|at| ((at - at.floor()) * SQUARES as f32) as u32);
+    rng_unit(rng_draw([7, 7], x, y, 0)[0]).round()
+}
+
+/// The texels of the squares: means over 8 x 8 places.
 fn random_texels() -> Vec<f32> {
     let texel = |i: u32| {
-        let square = [i % EDGE / 4, i / EDGE / 4];
-        rng_unit(rng_draw([7, 7], square[0], square[1], 0)[0]).round()
+        let places = (0..64u32).map(|k| {
+            let [x, y] = [i % EDGE, i / EDGE].map(|at| at as f32);
+            let [dx, dy] = [k % 8, k / 8].map(|at| (at as f32 + 0.5) / 8.0);
+            square((x + dx) / EDGE as f32, (y + dy) / EDGE as f32)
+        });
+        places.sum::<f32>() / 64.0
     };
     (0..EDGE * EDGE).map(texel).collect()
 }
 
 /// Root of the mean squared error of pixels, and the standard deviation of their means.
-fn errors(scene: &SceneData, texels: &[f32], down: f32, taps: f32) -> (f32, f32) {
+fn errors(scene: &SceneData, down: f32, taps: f32) -> (f32, f32) {
     let (mut squares, mut sum, mut square_sum) = (0.0, 0.0, 0.0);
     let count = 400u16;
     for k in 0..count {
         let eye = Vec3::new(f32::from(k) * 0.13, EYE, f32::from(k % 17) * 0.29);
         let direction = ray(down, f32::from(k % 90) * 4.0);
-        let expected = mean(texels, eye, direction);
+        let expected = mean(eye, direction);
         let error = seen(scene, eye, direction, taps) - expected;
         squares += error * error;
         sum += expected;
@@ -104,9 +115,9 @@ fn errors(scene: &SceneData, texels: &[f32], down: f32, taps: f32) -> (f32, f32)
 fn a_pixel_shows_the_mean_of_what_it_sees() {
     let texels = random_texels();
     let scene = ground(&texels, Affine2::IDENTITY, false);
-    for (down, most) in [(60.0, 0.3), (30.0, 0.3), (15.0, 0.35), (8.0, 0.4)] {
-        let (error, contrast) = errors(&scene, &texels, down, TEXTURE_TAPS);
-        let (alone, _) = errors(&scene, &texels, down, 1.0);
+    for (down, most) in [(60.0, 0.2), (30.0, 0.1), (15.0, 0.08), (8.0, 0.15)] {
+        let (error, contrast) = errors(&scene, down, TEXTURE_TAPS);
+        let (alone, _) = errors(&scene, down, 1.0);
         println!("{down}: {error} of {contrast}, with one sample {alone}");
         assert!(error < most * contrast, "{down}: {error} of {contrast}");
         assert!(error < 1.02 * alone, "{down}: {error} against {alone}");
@@ -147,7 +158,7 @@ fn stripes_along_the_view_stay_at_grazing_angles() {
     };
     // 28 m away a pixel is 3 cm wide and 0.5 m long.
     assert!(contrast(0.0, TEXTURE_TAPS) > 0.95, "{}", contrast(0.0, TEXTURE_TAPS));
-    assert!(contrast(0.0, 1.0) < 0.5, "{}", contrast(0.0, 1.0));
+    assert!(contrast(0.0, 1.0) < 0.7, "{}", contrast(0.0, 1.0));
     // Across the view they are shorter than the pixel.
     assert!(contrast(90.0, TEXTURE_TAPS) < 0.35, "{}", contrast(90.0, TEXTURE_TAPS));
 }

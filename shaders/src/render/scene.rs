@@ -71,6 +71,10 @@ shared_constants! {
         /// Samples of a texture along the longer side of a pixel's image on a surface, at most: surfaces seen at a grazing angle are blurred
         /// from 7 degrees on.
         TEXTURE_TAPS: f32 = 8.0;
+        /// Width in texels of a box of the variance of a bilinear lookup: 1/12 of a texel's own box, and 1/6 of the tent between them.
+        TEXTURE_TENT: f32 = 1.7320508;
+        /// Largest distance of neighboring samples of a texture, in texels that each interpolates.
+        TEXTURE_SPACE: f32 = 1.5;
         /// Texture flag: texels are square roots of linear colors.
         SCENE_ROOTED: u32 = 1;
         /// Texture flag: repeats in u.

@@ -55,19 +55,22 @@ fn texture_level(first: u32, width: i32, height: i32, uv: vec2f, flags: u32) -> 
     return top * (1.0 - fy) + bottom * fy;
 }
 
-// Samples in place of an ellipse with two diameters in texels: the line on which they lie, their number, and the width of each, at least 1. They
-// are as far apart as gives the line and the widths together the ellipse's extent, so that nothing jumps where a sample is added.
+// Samples in place of an ellipse with two diameters in texels: the line on which they lie, their number, and the edge of the texels that each
+// interpolates, at least 1. They are no farther apart than such texels reach, and have together the ellipse's variance.
 fn texture_taps(along: vec2f, across: vec2f, most: f32) -> vec4f {
     let first = dot(along, along);
     let second = dot(across, across);
     let length = sqrt(max(first, second));
-    let narrow = max(sqrt(min(first, second)), 1.0);
-    let taps = clamp(ceil(length / narrow), 1.0, max(most, 1.0));
-    let width = max(narrow, length / taps);
-    let rest = sqrt(max(1.0 - width * width / max(length * length, 1.0e-20), 0.0));
-    let line = select(0.0, rest, taps > 1.0);
+    let reach = TEXTURE_SPACE * most;
+    let shortest = select(length / TEXTURE_TENT, length / sqrt(TEXTURE_TENT * TEXTURE_TENT + reach * reach), most > 1.0);
+    let texel = max(max(sqrt(min(first, second)) / TEXTURE_TENT, shortest), 1.0);
+    let wide = TEXTURE_TENT * texel;
+    let line = sqrt(max(length * length - wide * wide, 0.0));
+    let taps = clamp(ceil(line / (TEXTURE_SPACE * texel)), 1.0, max(most, 1.0));
+    // Samples in the middle of their parts have less variance than the line.
+    let part = line / (max(length, 1.0e-20) * sqrt(1.0 - 1.0 / max(taps * taps, 2.0)));
     let longer = select(across, along, first >= second);
-    return vec4f(longer * line, taps, width);
+    return vec4f(longer * select(0.0, part, taps > 1.0), taps, texel);
 }
 
 // A slot at the corner's two sets of coordinates.

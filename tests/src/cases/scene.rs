@@ -119,7 +119,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 .with_outliers(2.0e-3),
             |a| {
                 let found = texture_taps(Vec2::from(a.f32s()), Vec2::from(a.f32s()), a.f32());
-                [found.line.x, found.line.y, found.taps, found.width].words()
+                [found.line.x, found.line.y, found.taps, found.texel].words()
             },
         ),
         FunctionCase::new("brdf_masking", &BRDF, &[alpha, cosine], FORMULA, |a| {
