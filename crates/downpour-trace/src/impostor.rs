@@ -29,7 +29,7 @@ use crate::scene::SceneView;
 #[must_use]
 pub fn impostor_attenuation(cosine: f32, edge: f32) -> f32 {
     let f = (1.0 - cosine) * edge;
-    (1.0 - f * f).clamp(0.0, 1.0)
+    (1.0 - f * f).max(0.0)
 }
 
 impl SceneView<'_> {

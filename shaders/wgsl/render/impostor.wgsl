@@ -16,7 +16,7 @@ fn impostor_size() -> vec2u {
 // Factor of a reflection toward a viewer, who sees the surface at a cosine; `edge` is the paper's f0.
 fn impostor_attenuation(cosine: f32, edge: f32) -> f32 {
     let f = (1.0 - cosine) * edge;
-    return clamp(1.0 - f * f, 0.0, 1.0);
+    return max(1.0 - f * f, 0.0);
 }
 
 // Position in the buffer, in texels from the top left, of what is mirrored along a direction by a surface that is seen along `towards`.

@@ -18,7 +18,7 @@ use glam::{Vec2, Vec3};
 
 use super::puddle_water::laid;
 use super::scene::{PictureRays, picture_by, shining_scene};
-use crate::Domain::{Or, Uniform};
+use crate::Domain::{self, Fixed, OneOf, Or, Uniform};
 use crate::compare::{Cpu, Gpu as FromGpu};
 use crate::function::Run;
 use crate::signature::WordKind;
@@ -44,14 +44,20 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             Tol::exact("sums, and the smaller of numbers"),
             |a| impostor_draw_overlap(a.f32(), a.f32()).words(),
         ),
-        FunctionCase::new(
-            "impostor_draw_cover",
-            &IMPOSTOR_DRAW,
-            &[offset, offset, half, half, Uniform(1.0, 40.0)],
-            Tol::absolute(2.0e-6, "products and quotients (2.5 ulp) of numbers up to 1"),
-            |a| impostor_draw_cover(Vec2::from(a.f32s()), Vec2::from(a.f32s()), a.f32()).words(),
-        ),
+        cover(&[offset, offset, half, half, Uniform(1.0, 40.0)]),
+        // About the lower edge, where the tail begins.
+        cover(&[Uniform(-2.0, 2.0), OneOf(&[0.5, 1.0, 1.005, 1.5]), half, Fixed(1.0), Uniform(1.0, 40.0)]),
     ]
+}
+
+fn cover(domains: &[Domain]) -> FunctionCase {
+    FunctionCase::new(
+        "impostor_draw_cover",
+        &IMPOSTOR_DRAW,
+        domains,
+        Tol::absolute(2.0e-6, "products and quotients (2.5 ulp) of numbers up to 1"),
+        |a| impostor_draw_cover(Vec2::from(a.f32s()), Vec2::from(a.f32s()), a.f32()).words(),
+    )
 }
 
 /// Overrides of a wet scene, or of one with puddles, with billboards.
