@@ -42,6 +42,22 @@ pub struct Run {
     pub kinds: Vec<WordKind>,
 }
 
+impl Run {
+    /// Two pictures of some columns, rows from the top; the arguments are column and row.
+    #[must_use]
+    pub fn of_pixels<const N: usize>(width: u32, cpu: &[[f32; N]], gpu: &[[f32; N]]) -> Self {
+        let words = |pixels: &[[f32; N]]| pixels.iter().flatten().map(|v| v.to_bits()).collect();
+        Self {
+            arguments: (0..cpu.len() as u32)
+                .map(|i| [i % width, i / width].map(|c| (c as f32).to_bits()).to_vec())
+                .collect(),
+            cpu: Cpu(words(cpu)),
+            gpu: compare::Gpu(words(gpu)),
+            kinds: vec![WordKind::Float; N],
+        }
+    }
+}
+
 /// The arguments of all calls, and the twin's words.
 #[derive(Clone, Debug)]
 pub struct Twin {

@@ -1,4 +1,4 @@
-//! What wet surfaces mirror as billboards: data. How they are found and drawn is in [`impostor`](crate::impostor).
+//! Impostors for reflections on wet surfaces, as data; [`impostor`](crate::impostor) finds and draws them.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use downpour_bvh::BvhNode;
 use downpour_render::camera::Viewpoint;
 use glam::{Vec2, Vec3};
 
-/// Something that shines, mirrored in level ground.
+/// A shining object, mirrored in level ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Billboard {
     /// Its middle, below the ground.
@@ -17,20 +17,20 @@ pub struct Billboard {
     pub radiance: Vec3,
 }
 
-/// What the wet surfaces of a frame mirror.
+/// The impostors of a frame.
 #[derive(Clone, Debug)]
 pub struct Impostors {
     /// Edge coefficient of reflections: the paper's f0.
     pub edge: f32,
-    /// Radiance around, without what shines: texels of an octahedral map, rows from the top.
+    /// Radiance of the surroundings, without shining objects: texels of an octahedral map, rows from the top.
     pub around: Vec<Vec3>,
-    /// What shines, the farthest first.
+    /// Shining objects, the farthest first.
     pub billboards: Vec<Billboard>,
-    /// What it was found for.
+    /// The inputs for which they were found.
     pub(crate) of: Basis,
 }
 
-/// What billboards depend on.
+/// Inputs of impostors, by which they are found again.
 #[derive(Clone, Debug)]
 pub(crate) struct Basis {
     pub(crate) nodes: Arc<Vec<BvhNode>>,

@@ -92,8 +92,8 @@ pub struct RenderFrame {
     pub ray_row: u32,
     /// Row of the table where rain on panes of the scene begins; 0: they are dry.
     pub glazing: u32,
-    /// Number of billboards in the buffer of mirrored things, and one ([`impostor`](crate::impostor)); 0: what wet surfaces mirror is found
-    /// by rays.
+    /// Number of billboards in the reflection buffer, plus 1 ([`impostor`](crate::impostor)); 0: reflections on wet surfaces are found by
+    /// rays.
     pub impostors: u32,
     /// Edge coefficient of reflections from that buffer: the paper's f0.
     pub impostor_edge: f32,
@@ -144,9 +144,9 @@ pub struct SceneData {
     pub sky_levels: [[u32; 4]; SCENE_SKY_LEVELS as usize],
     /// Irradiance of the sky over pi.
     pub sky_irradiance: [[f32; 4]; 9],
-    /// What wet surfaces mirror as billboards; `None`: what rays find.
+    /// Impostors for reflections on wet surfaces; `None`: reflections are found by rays.
     pub impostors: Option<Arc<Impostors>>,
-    /// The buffer of these for a frame on the CPU: [`SceneView::mirrored_picture`](crate::scene::SceneView::mirrored_picture).
+    /// The reflection buffer of a frame on the CPU: [`SceneView::mirrored_picture`](crate::scene::SceneView::mirrored_picture).
     pub impostor_picture: Arc<Vec<[u32; 2]>>,
     /// Ripples that a device holds: the table shows level water in their place.
     #[cfg(feature = "wgpu")]

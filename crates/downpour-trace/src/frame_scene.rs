@@ -97,18 +97,20 @@ pub struct FrameScene {
     looks: Option<Arc<SceneLooks>>,
 }
 
-/// Sets light and water on surfaces to a time in seconds.
-fn set_time(data: &mut SceneData, weather: &Weather, loaded: &Loaded, origin: DVec3, time_s: f64) {
-    light::relight(data, weather, loaded, origin, time_s);
-    data.set_wetness(SceneWetness::of(weather, time_s, origin).as_ref());
-    data.set_glazing(&glazing::rows(weather, &loaded.scene, time_s, origin));
-}
-
-/// Finds what wet surfaces mirror as billboards, if the weather asks for them.
+/// Sets light and water on surfaces to a time in seconds, and their reflections, which also depend on the eye.
 ///
 /// # Errors
 /// [`RenderError`] for an invalid eye.
-fn set_impostors(data: &mut SceneData, weather: &Weather, viewpoint: &Viewpoint) -> Result<(), RenderError> {
+fn set_time(
+    data: &mut SceneData,
+    weather: &Weather,
+    loaded: &Loaded,
+    (origin, viewpoint): (DVec3, &Viewpoint),
+    time_s: f64,
+) -> Result<(), RenderError> {
+    light::relight(data, weather, loaded, origin, time_s);
+    data.set_wetness(SceneWetness::of(weather, time_s, origin).as_ref());
+    data.set_glazing(&glazing::rows(weather, &loaded.scene, time_s, origin));
     let before = data.impostors.take();
     if let (WetReflections::Tatarchuk2006 { edge }, true) =
         (weather.wetness.reflections, data.wetness > 0 || !weather.puddles.is_empty())
@@ -162,7 +164,6 @@ impl FrameScene {
         if let Some(sun) = loaded.sun {
             data.set_light_radius(data.light_count - 1, sun.angular_radius);
         }
-        set_time(&mut data, weather, loaded, origin, time_s);
         let fov =
             weather.camera.fov.unwrap_or_else(|| seen.as_ref().map_or(weather::FOV_RAD, |seen| seen.fov));
         let (camera, mut viewpoint) = match &seen {
@@ -175,7 +176,7 @@ impl FrameScene {
         set_fov(&mut viewpoint, weather, time_s);
         // An invalid camera is reported here, before the work begins.
         viewpoint.axes()?;
-        set_impostors(&mut data, weather, &viewpoint)?;
+        set_time(&mut data, weather, loaded, (origin, &viewpoint), time_s)?;
         Ok(Self {
             data,
             viewpoint,
@@ -203,8 +204,8 @@ impl FrameScene {
         let Some(seen) = CameraView::of(weather, loaded, &loaded.pose(weather, time_s), time_s) else {
             let mut frame_scene = Self { shutter_s: weather.drop_exposure_s(time_s), ..self.clone() };
             set_fov(&mut frame_scene.viewpoint, weather, time_s);
-            set_time(&mut frame_scene.data, weather, loaded, self.origin, time_s);
-            set_impostors(&mut frame_scene.data, weather, &frame_scene.viewpoint)?;
+            let eye = (self.origin, &frame_scene.viewpoint);
+            set_time(&mut frame_scene.data, weather, loaded, eye, time_s)?;
             return Ok(frame_scene);
         };
         let distance_m = (seen.eye - self.origin).abs().max_element();
@@ -220,8 +221,7 @@ impl FrameScene {
             shutter_s: weather.drop_exposure_s(time_s),
             ..self.clone()
         };
-        set_time(&mut frame_scene.data, weather, loaded, self.origin, time_s);
-        set_impostors(&mut frame_scene.data, weather, &viewpoint)?;
+        set_time(&mut frame_scene.data, weather, loaded, (self.origin, &viewpoint), time_s)?;
         Ok(frame_scene)
     }
 

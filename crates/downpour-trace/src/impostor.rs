@@ -1,29 +1,41 @@
-//! What wet surfaces mirror, as billboards in a buffer: reflections as N. Tatarchuk & J. Isidoro 2006, section 6.3, draw them. Twin of
-//! `shaders/wgsl/render/impostor.wgsl`.
+//! Reflections on wet surfaces by impostors: N. Tatarchuk & J. Isidoro 2006, section 6.3. Twin of `shaders/wgsl/render/impostor.wgsl`.
 //!
-//! By default rays find what is mirrored. In this form, by name, wet ground and puddles show a buffer of half the picture's size, in
-//! half floats:
+//! By default reflections are found by rays. In this form, by name, wet ground and puddles show a reflection buffer of half the
+//! picture's size, in half floats:
 //!
-//! - what is around, as a small environment map from near the ground ahead of the eye;
+//! - the surroundings, by a small environment map from near the ground ahead of the eye;
 //! - billboards of lamps and of groups of triangles that shine ([`list`]), their colors more saturated, mirrored in level ground and
 //!   stretched toward the viewer ([`draw`]);
 //! - blurred vertically, pass by pass ([`blur`]).
 //!
-//! A texel is what level ground would mirror there. A surface looks it up where level ground would mirror the way its own does, of
+//! A texel is the reflection in level ground there. A surface looks it up where level ground would mirror the way its own does, of
 //! whose relief and ripples a part warps it, times `ka = saturate(1 - f^2)`, `f = (1 - n.v) f0`.
 //!
-//! Limits: what is mirrored is neither sharper nor blurrier for smoother or rougher surfaces; one level of the ground for all; billboards
+//! Limits: a reflection is neither sharper nor blurrier for smoother or rougher surfaces; one level of the ground for all; billboards
 //! hide one another, but nothing else hides a part of one. Smooth wet surfaces (cars) and what is dry keep their rays.
 
 pub mod blur;
 pub mod draw;
 pub mod list;
 
-use downpour_math::packing::packing_unpack_half;
+use downpour_math::packing::{packing_pack_half, packing_unpack_half};
 use downpour_shaders::render::impostor::{IMPOSTOR_ASIDE, IMPOSTOR_WARP};
 use glam::{UVec2, Vec2, Vec3};
 
 use crate::scene::SceneView;
+
+/// A color as a texel.
+#[must_use]
+pub fn impostor_pack(light: Vec3) -> [u32; 2] {
+    [packing_pack_half([light.x, light.y]), packing_pack_half([light.z, 0.0])]
+}
+
+/// The color of a texel.
+#[must_use]
+pub fn impostor_unpack(texel: [u32; 2]) -> Vec3 {
+    let [[red, green], [blue, _]] = texel.map(packing_unpack_half);
+    Vec3::new(red, green, blue)
+}
 
 /// Factor of a reflection toward a viewer, who sees the surface at a cosine; `edge` is the paper's f0.
 #[must_use]
@@ -52,7 +64,7 @@ impl SceneView<'_> {
     fn impostor_texel(&self, column: i32, row: i32) -> Vec3 {
         let size = self.impostor_size().as_ivec2();
         let (x, y) = (column.clamp(0, size.x - 1), row.clamp(0, size.y - 1));
-        unpacked(self.data.impostor_picture[(y * size.x + x) as usize])
+        impostor_unpack(self.data.impostor_picture[(y * size.x + x) as usize])
     }
 
     /// The buffer at a position in texels, bilinear.
@@ -78,10 +90,4 @@ impl SceneView<'_> {
         let factor = impostor_attenuation(cosine, self.frame.impostor_edge);
         self.impostor_light(self.impostor_place(along, towards)) * factor
     }
-}
-
-/// Color of a texel.
-fn unpacked(texel: [u32; 2]) -> Vec3 {
-    let [[red, green], [blue, _]] = texel.map(packing_unpack_half);
-    Vec3::new(red, green, blue)
 }

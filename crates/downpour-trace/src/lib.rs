@@ -5,7 +5,7 @@
 //!   light that comes there; [`skylight`] filters it over neighboring pixels, [`temporal`] over the frames of a clip;
 //! - [`capture`]: radiance from every direction around the eye, for the drops;
 //! - [`emitter`]: surfaces that shine, as lights;
-//! - [`wet`]: surfaces that rain has made wet; [`impostor`]: what they mirror as billboards; [`puddle`], [`wet_ground`]: water that
+//! - [`wet`]: surfaces that rain has made wet; [`impostor`]: their reflections as billboards; [`puddle`], [`wet_ground`]: water that
 //!   stands on the ground; [`pane_shadow`]: the light through a wet pane;
 //! - [`frame_scene`]: the scene and the eye of a weather at a time;
 //! - [`truth`]: what the pixels of a picture show, in numbers;

@@ -292,7 +292,7 @@ impl SceneView<'_> {
         self.pixels_and_light()
     }
 
-    /// The same, with the buffer of mirrored things that it needs.
+    /// The same, with the reflection buffer at hand.
     fn pixels_and_light(&self) -> (Vec<[f32; 4]>, PixelLight) {
         let width = self.frame.camera.width;
         let (mut picture, found): (Vec<[f32; 4]>, Vec<TraceFound>) = (0..self.frame.camera.height)

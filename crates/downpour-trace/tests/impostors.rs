@@ -1,4 +1,4 @@
-//! What wet surfaces mirror as billboards, in the form of Tatarchuk & Isidoro 2006.
+//! Reflections on wet surfaces by impostors, in the form of Tatarchuk & Isidoro 2006.
 
 #![expect(clippy::cast_precision_loss, reason = "rows and columns of small pictures")]
 
@@ -199,5 +199,17 @@ fn what_is_dry_is_as_it_is_without_billboards() -> Outcome {
     let mut with = dry.clone();
     with.impostors = Some(list::find(&dry, &view(), 0.5, None)?);
     assert_eq!(picture(&dry)?, picture(&with)?);
+    Ok(())
+}
+
+#[test]
+fn an_eye_that_looks_straight_down_has_impostors() -> Outcome {
+    let mut lit = street();
+    lamp(&mut lit);
+    let lit = lit.build(&SkyLight::uniform([0.2; 3]));
+    let down = Viewpoint { forward: Vec3::NEG_Y, up: Vec3::NEG_Z, ..view() };
+    let found = list::find(&lit, &down, 0.5, None)?;
+    assert_eq!(found.billboards.len(), 1);
+    assert!(found.around.iter().all(|light| light.is_finite() && light.min_element() >= 0.0));
     Ok(())
 }

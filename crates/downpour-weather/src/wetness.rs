@@ -17,7 +17,7 @@ const REFLECTION_EDGE: f64 = 0.5;
 /// Wetness in which a fixed one ends: the storage is full but for this.
 const DRY_FRACTION: f64 = 1.0e-5;
 
-/// How it is found what wet ground and puddles mirror.
+/// Form of the reflections on wet ground and puddles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum WetReflections {
     /// By rays.
@@ -45,7 +45,7 @@ pub struct Wetness {
     pub storage_m: f64,
     /// Time constant of drying, s.
     pub drying_s: f64,
-    /// How it is found what wet ground mirrors.
+    /// Form of the reflections on wet ground.
     pub reflections: WetReflections,
 }
 
@@ -228,7 +228,7 @@ impl Wetness {
     }
 }
 
-/// How it is found what wet ground mirrors.
+/// The form that a table asks for.
 fn reflections(table: &WetnessTable, positions: &Positions<'_>) -> Result<WetReflections, SceneError> {
     match (table.reflections, table.reflection_edge) {
         (Some(ReflectionsName::Tatarchuk2006), edge) => {

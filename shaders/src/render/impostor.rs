@@ -1,4 +1,4 @@
-//! `wgsl/render/{impostor,impostor_draw,impostor_blur}.wgsl`: what wet surfaces mirror, as a buffer of billboards. Twin:
+//! `wgsl/render/{impostor,impostor_draw,impostor_blur}.wgsl`: reflections on wet surfaces by impostors. Twin:
 //! `downpour_trace::impostor`.
 
 use super::camera::CAMERA;
@@ -41,14 +41,14 @@ pub static IMPOSTOR: Module = Module {
 pub static IMPOSTOR_DRAW: Module = Module {
     path: "render/impostor_draw.wgsl",
     wgsl: include_str!("../../wgsl/render/impostor_draw.wgsl"),
-    uses: &[&IMPOSTOR_CONSTANTS, &DATA, &CAMERA, &PACKING],
+    uses: &[&IMPOSTOR_CONSTANTS, &IMPOSTOR, &DATA, &CAMERA, &PACKING],
 };
 
 /// Blurring it. Twin: `downpour_trace::impostor::blur`.
 pub static IMPOSTOR_BLUR: Module = Module {
     path: "render/impostor_blur.wgsl",
     wgsl: include_str!("../../wgsl/render/impostor_blur.wgsl"),
-    uses: &[&DATA],
+    uses: &[&IMPOSTOR, &DATA],
 };
 
 /// One invocation per texel.

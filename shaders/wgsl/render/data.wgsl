@@ -39,7 +39,7 @@ struct RenderFrame {
     ray_row: u32,
     // Row of the table where rain on panes of the scene begins; 0: they are dry.
     glazing: u32,
-    // Number of billboards in the buffer of mirrored things, and one; 0: what wet surfaces mirror is found by rays.
+    // Number of billboards in the reflection buffer, plus 1; 0: reflections on wet surfaces are found by rays.
     impostors: u32,
     // The paper's f0 of reflections from that buffer.
     impostor_edge: f32,

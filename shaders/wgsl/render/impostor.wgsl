@@ -1,5 +1,5 @@
-// What wet surfaces mirror, as a buffer of half the picture's size: the form of Tatarchuk & Isidoro 2006, section 6.3. A texel is what
-// level ground would mirror there; an uneven surface is looked up where level ground would mirror the same way.
+// Reflections on wet surfaces in a buffer of half the picture's size: the form of Tatarchuk & Isidoro 2006, section 6.3. A texel is the
+// reflection in level ground there; an uneven surface is looked up where level ground would mirror the same way.
 // Twin: downpour_trace::impostor, where the method is described.
 
 // True if the scene has that form: the code slows down the rest.
@@ -11,6 +11,16 @@ override IMPOSTOR_REFLECTIONS: bool = true;
 // Columns and rows of the buffer.
 fn impostor_size() -> vec2u {
     return (vec2u(render_frame.camera.width, render_frame.camera.height) + 1u) / 2u;
+}
+
+// A color as a texel.
+fn impostor_pack(light: vec3f) -> vec2u {
+    return vec2u(pack2x16float(light.xy), pack2x16float(vec2f(light.z, 0.0)));
+}
+
+// The color of a texel.
+fn impostor_unpack(texel: vec2u) -> vec3f {
+    return vec3f(unpack2x16float(texel.x), unpack2x16float(texel.y).x);
 }
 
 // Factor of a reflection toward a viewer, who sees the surface at a cosine; `edge` is the paper's f0.
@@ -31,8 +41,7 @@ fn impostor_texel(column: i32, row: i32) -> vec3f {
     let size = impostor_size();
     let x = u32(clamp(column, 0, i32(size.x) - 1));
     let y = u32(clamp(row, 0, i32(size.y) - 1));
-    let texel = impostor_picture[y * size.x + x];
-    return vec3f(unpack2x16float(texel.x), unpack2x16float(texel.y).x);
+    return impostor_unpack(impostor_picture[y * size.x + x]);
 }
 
 // The buffer at a position in texels, bilinear.

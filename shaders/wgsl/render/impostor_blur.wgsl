@@ -1,4 +1,4 @@
-// One pass of the vertical blur of the buffer of mirrored things, after Kawase: the mean of four texels, farther apart from pass to pass.
+// One pass of the vertical blur of the reflection buffer, after Kawase: the mean of four texels, farther apart from pass to pass.
 // Twin: downpour_trace::impostor::blur.
 
 @group(0) @binding(1) var<storage, read> impostor_blur_before: array<vec2u>;
@@ -6,8 +6,7 @@
 
 // A texel of a column; beyond its ends, the last one.
 fn impostor_blur_texel(column: u32, row: i32, size: vec2u) -> vec3f {
-    let texel = impostor_blur_before[u32(clamp(row, 0, i32(size.y) - 1)) * size.x + column];
-    return vec3f(unpack2x16float(texel.x), unpack2x16float(texel.y).x);
+    return impostor_unpack(impostor_blur_before[u32(clamp(row, 0, i32(size.y) - 1)) * size.x + column]);
 }
 
 // The mean of pass `turn` at a texel.
@@ -21,10 +20,10 @@ fn impostor_blur_mean(column: u32, row: u32, size: vec2u, turn: u32) -> vec3f {
 
 @compute @workgroup_size(8, 8, 1)
 fn main_impostor_blur(@builtin(global_invocation_id) id: vec3u) {
-    let size = (vec2u(render_frame.camera.width, render_frame.camera.height) + 1u) / 2u;
+    let size = impostor_size();
     if id.x >= size.x || id.y >= size.y {
         return;
     }
     let mean = impostor_blur_mean(id.x, id.y, size, render_frame.turn);
-    impostor_blur_after[id.y * size.x + id.x] = vec2u(pack2x16float(mean.xy), pack2x16float(vec2f(mean.z, 0.0)));
+    impostor_blur_after[id.y * size.x + id.x] = impostor_pack(mean);
 }

@@ -1,5 +1,5 @@
-// The buffer of mirrored things: what is around, from a small map, and billboards of what shines, mirrored in level ground and stretched
-// toward the viewer.
+// The reflection buffer: the surroundings, from a small environment map, and billboards of shining objects, mirrored in level ground and
+// stretched toward the viewer.
 // Twin: downpour_trace::impostor::draw.
 
 // Texels of an octahedral map, IMPOSTOR_PROBE along an edge; then two rows for each billboard, the farthest first: its mirrored middle and
@@ -65,10 +65,10 @@ fn impostor_draw_texel(x: u32, y: u32) -> vec3f {
 
 @compute @workgroup_size(8, 8, 1)
 fn main_impostor_draw(@builtin(global_invocation_id) id: vec3u) {
-    let size = (vec2u(render_frame.camera.width, render_frame.camera.height) + 1u) / 2u;
+    let size = impostor_size();
     if id.x >= size.x || id.y >= size.y {
         return;
     }
     let light = min(impostor_draw_texel(id.x, id.y), vec3f(IMPOSTOR_MAX));
-    impostor_drawn[id.y * size.x + id.x] = vec2u(pack2x16float(light.xy), pack2x16float(vec2f(light.z, 0.0)));
+    impostor_drawn[id.y * size.x + id.x] = impostor_pack(light);
 }

@@ -14,7 +14,7 @@ use downpour_trace::glazing::{
 use downpour_weather::WetnessAt;
 use glam::{Vec2, Vec3};
 
-use super::scene::{PictureRays, picture_by, scene};
+use super::scene::{Parts, PictureRays, picture_by, scene};
 use crate::Domain::{AnyWord, Below, Fixed, Made, OneOf, Or, Uniform, Unit3};
 use crate::function::Run;
 use crate::words::{Args, IntoWords as _};
@@ -326,14 +326,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
     ]
 }
 
-const OVERRIDES: &[(&str, f64)] = &[
-    ("GLAZING_PANES", 1.0),
-    ("IMPOSTOR_REFLECTIONS", 0.0),
-    ("SCENE_PANE", 0.0),
-    ("SCENE_SHINES", 0.0),
-    ("SCENE_WET", 0.0),
-    ("WET_SURFACES", 1.0),
-];
+const OVERRIDES: &[(&str, f64)] = &Parts { wet_panes: 1.0, wet: 1.0, ..Parts::NONE }.overrides();
 
 const PICTURE: Tol = Tol::relative(
     3.0e-3,
@@ -344,15 +337,8 @@ const PICTURE: Tol = Tol::relative(
 
 /// The cases.
 pub(super) fn kernels() -> Vec<KernelCase> {
-    let case = |name, run| KernelCase {
-        name,
-        kernel: &TRACE_KERNEL,
-        with: &[],
-        overrides: OVERRIDES,
-        text: None,
-        tol: PICTURE,
-        run,
-    };
+    let case =
+        |name, run| KernelCase { overrides: OVERRIDES, ..KernelCase::new(name, &TRACE_KERNEL, PICTURE, run) };
     vec![
         case("main_trace: rain on panes of any material", |gpu| {
             case_of(gpu, SCENE_NONE, 0.0, Vec3::new(1.5, 0.9, 2.6))

@@ -15,9 +15,8 @@ use glam::Vec3;
 use half::f16;
 
 use crate::Domain::{Below, Made, OneOf, Uniform, Unit3};
-use crate::compare::{Cpu, Gpu as FromGpu, POISON};
+use crate::compare::POISON;
 use crate::function::Run;
-use crate::signature::WordKind;
 use crate::words::IntoWords as _;
 use crate::{FunctionCase, KernelCase, Tol};
 
@@ -128,18 +127,6 @@ fn colors(gpu: &Gpu, size: [u32; 2], seed: u32) -> (wgpu::TextureView, Vec<[f32;
     (view, texels.iter().map(|texel| texel.map(f16::to_f32)).collect())
 }
 
-fn run(width: u32, cpu: &[[f32; 4]], gpu: &[[f32; 4]]) -> Run {
-    let words = |texels: &[[f32; 4]]| texels.iter().flatten().map(|v| v.to_bits()).collect();
-    Run {
-        arguments: (0..cpu.len() as u32)
-            .map(|i| [i % width, i / width].map(|c| (c as f32).to_bits()).to_vec())
-            .collect(),
-        cpu: Cpu(words(cpu)),
-        gpu: FromGpu(words(gpu)),
-        kinds: vec![WordKind::Float; 4],
-    }
-}
-
 fn plate_case(gpu: &Gpu) -> Result<Run, GpuError> {
     let (color, colors) = colors(gpu, SIZE, 1);
     let words: Vec<u16> = (0..SIZE[0] * SIZE[1])
@@ -169,7 +156,7 @@ fn plate_case(gpu: &Gpu) -> Result<Run, GpuError> {
         ],
     )?;
     gpu.submit(&[kernel.dispatch(&bindings, [SIZE[0].div_ceil(8), SIZE[1].div_ceil(8), 1])])?;
-    Ok(run(SIZE[0], expected, &gpu.read(&pixels)?))
+    Ok(Run::of_pixels(SIZE[0], expected, &gpu.read(&pixels)?))
 }
 
 fn environment_case(gpu: &Gpu, with_sky: bool) -> Result<Run, GpuError> {
@@ -195,7 +182,7 @@ fn environment_case(gpu: &Gpu, with_sky: bool) -> Result<Run, GpuError> {
         ],
     )?;
     gpu.submit(&[kernel.dispatch(&bindings, [MAP.div_ceil(8), MAP.div_ceil(8), 1])])?;
-    Ok(run(MAP, &expected, &gpu.read(&map)?))
+    Ok(Run::of_pixels(MAP, &expected, &gpu.read(&map)?))
 }
 
 /// The cases.

@@ -11,17 +11,15 @@ use downpour_trace::SceneWetness;
 use downpour_trace::data::{RenderFrame, SceneData};
 use downpour_trace::gpu::ImpostorPipeline;
 use downpour_trace::impostor::draw::{impostor_draw_cover, impostor_draw_overlap};
-use downpour_trace::impostor::{impostor_attenuation, list};
+use downpour_trace::impostor::{impostor_attenuation, impostor_unpack, list};
 use downpour_trace::scene::SceneView;
 use downpour_weather::WetnessAt;
 use glam::{Vec2, Vec3};
 
 use super::puddle_water::laid;
-use super::scene::{PictureRays, picture_by, shining_scene};
+use super::scene::{Parts, PictureRays, picture_by, shining_scene};
 use crate::Domain::{self, Fixed, OneOf, Or, Uniform};
-use crate::compare::{Cpu, Gpu as FromGpu};
 use crate::function::Run;
-use crate::signature::WordKind;
 use crate::words::IntoWords as _;
 use crate::{FunctionCase, KernelCase, Tol};
 
@@ -60,21 +58,12 @@ fn cover(domains: &[Domain]) -> FunctionCase {
     )
 }
 
-/// Overrides of a wet scene, or of one with puddles, with billboards.
-const fn overrides(puddles: f64) -> [(&'static str, f64); 6] {
-    [
-        ("GLAZING_PANES", 0.0),
-        ("IMPOSTOR_REFLECTIONS", 1.0),
-        ("SCENE_PANE", 0.0),
-        ("SCENE_SHINES", 1.0),
-        ("SCENE_WET", puddles),
-        ("WET_SURFACES", 1.0),
-    ]
-}
+/// A wet scene with impostors.
+const WET: &[(&str, f64)] = &Parts { impostors: 1.0, shines: 1.0, wet: 1.0, ..Parts::NONE }.overrides();
 
-const WET: &[(&str, f64)] = &overrides(0.0);
-
-const PUDDLES: &[(&str, f64)] = &overrides(1.0);
+/// The same with puddles.
+const PUDDLES: &[(&str, f64)] =
+    &Parts { impostors: 1.0, shines: 1.0, wet: 1.0, puddles: 1.0, ..Parts::NONE }.overrides();
 
 const PICTURE: Tol = Tol::relative(
     3.0e-3,
@@ -95,24 +84,10 @@ const DRAW: &[&Kernel] = &[&IMPOSTOR_DRAW_KERNEL];
 
 /// The cases.
 pub(super) fn kernels() -> Vec<KernelCase> {
-    let buffer = |name, kernel, with| KernelCase {
-        name,
-        kernel,
-        with,
-        overrides: &[],
-        text: None,
-        tol: BUFFER,
-        run: case_buffer,
-    };
-    let traced = |name, overrides, run| KernelCase {
-        name,
-        kernel: &TRACE_KERNEL,
-        with: &[],
-        overrides,
-        text: None,
-        tol: PICTURE,
-        run,
-    };
+    let buffer =
+        |name, kernel, with| KernelCase { with, ..KernelCase::new(name, kernel, BUFFER, case_buffer) };
+    let traced =
+        |name, overrides, run| KernelCase { overrides, ..KernelCase::new(name, &TRACE_KERNEL, PICTURE, run) };
     vec![
         buffer("main_impostor_draw: a wet scene", &IMPOSTOR_DRAW_KERNEL, BLUR),
         buffer("main_impostor_blur: a wet scene", &IMPOSTOR_BLUR_KERNEL, DRAW),
@@ -156,12 +131,10 @@ fn case_puddles(gpu: &Gpu) -> Result<Run, GpuError> {
 /// The buffer after all passes.
 fn case_buffer(gpu: &Gpu) -> Result<Run, GpuError> {
     let scene = scene();
-    let size = [803, 481];
+    let size = [803_u32, 481];
     let frame = RenderFrame::new(&scene, &viewpoint(), size, 1, 1, 3).expect("a frame");
-    let texels = size.map(|edge: u32| edge.div_ceil(2));
-    let halves = |picture: &[[u32; 2]]| -> Vec<u32> {
-        let light = picture.iter().flat_map(|texel| texel.map(downpour_math::packing::packing_unpack_half));
-        light.flatten().map(f32::to_bits).collect()
+    let colors = |picture: &[[u32; 2]]| -> Vec<[f32; 3]> {
+        picture.iter().map(|&texel| impostor_unpack(texel).to_array()).collect()
     };
     let cpu = SceneView { data: &scene, frame: &frame }.mirrored_picture();
     let pipeline = ImpostorPipeline::default();
@@ -171,12 +144,5 @@ fn case_buffer(gpu: &Gpu) -> Result<Run, GpuError> {
         gpu.submit(&[dispatch])?;
     }
     let of_gpu: Vec<[u32; 2]> = gpu.read(pass.drawn())?;
-    Ok(Run {
-        arguments: (0..texels[0] * texels[1])
-            .map(|i| [i % texels[0], i / texels[0]].map(|c| (c as f32).to_bits()).to_vec())
-            .collect(),
-        cpu: Cpu(halves(&cpu)),
-        gpu: FromGpu(halves(&of_gpu)),
-        kinds: vec![WordKind::Float; 4],
-    })
+    Ok(Run::of_pixels(size[0].div_ceil(2), &colors(&cpu), &colors(&of_gpu)))
 }

@@ -6,7 +6,7 @@ use downpour_render::glass::{GlassPictureDrop, PaneShade, PaneShadows};
 use downpour_shaders::render::scene::TRACE_KERNEL;
 use glam::Vec3;
 
-use super::scene::{picture, scene};
+use super::scene::{Parts, picture, scene};
 use crate::function::Run;
 use crate::{KernelCase, Tol};
 
@@ -33,24 +33,19 @@ fn case(gpu: &Gpu, form: PaneShadows, gathers_m: f32, height: f32) -> Result<Run
     picture(gpu, &scene, Vec3::new(0.6, 0.9, 2.6), 1)
 }
 
+const OVERRIDES: &[(&str, f64)] = &Parts { pane: 1.0, ..Parts::NONE }.overrides();
+
+const PICTURE: Tol = Tol::relative(
+    4.0e-3,
+    4.0e-3,
+    "log2 chooses the level, directions go through sine and cosine, and light that is gathered changes eightfold within a texel",
+)
+.with_outliers(6.0e-3);
+
 /// The cases.
 pub(super) fn kernels() -> Vec<KernelCase> {
-    let case = |name, run| {
-        KernelCase {
-        name,
-        kernel: &TRACE_KERNEL,
-        with: &[],
-        overrides: &[("GLAZING_PANES", 0.0), ("IMPOSTOR_REFLECTIONS", 0.0), ("SCENE_PANE", 1.0), ("SCENE_SHINES", 0.0), ("SCENE_WET", 0.0), ("WET_SURFACES", 0.0)],
-        text: None,
-        tol: Tol::relative(
-            4.0e-3,
-            4.0e-3,
-            "log2 chooses the level, directions go through sine and cosine, and light that is gathered changes eightfold within a texel",
-        )
-        .with_outliers(6.0e-3),
-        run,
-    }
-    };
+    let case =
+        |name, run| KernelCase { overrides: OVERRIDES, ..KernelCase::new(name, &TRACE_KERNEL, PICTURE, run) };
     vec![
         case("main_trace: a pane of lenses, near its focus", case_near),
         case("main_trace: a pane of lenses, far beyond it", case_far),

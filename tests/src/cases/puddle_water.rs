@@ -23,7 +23,7 @@ use downpour_trace::scene::water::{
 use downpour_trace::sky_light::SkyLight;
 use glam::{Affine3A, DVec3, Vec2, Vec3};
 
-use super::scene::{picture, scene};
+use super::scene::{Parts, picture, scene};
 use crate::Domain::{Uniform, Unit3};
 use crate::function::Run;
 use crate::words::{Args, IntoWords as _};
@@ -213,6 +213,8 @@ fn lay(scene: &mut SceneData, puddles: &[(PuddleMap, PuddleLook)], rings: Option
     });
 }
 
+const OVERRIDES: &[(&str, f64)] = &Parts { puddles: 1.0, ..Parts::NONE }.overrides();
+
 const WATER: Tol = Tol::relative(
     4.0e-3,
     4.0e-3,
@@ -222,22 +224,8 @@ const WATER: Tol = Tol::relative(
 
 /// The cases.
 pub(super) fn kernels() -> Vec<KernelCase> {
-    let case = |name, run| KernelCase {
-        name,
-        kernel: &TRACE_KERNEL,
-        with: &[],
-        overrides: &[
-            ("GLAZING_PANES", 0.0),
-            ("IMPOSTOR_REFLECTIONS", 0.0),
-            ("SCENE_PANE", 0.0),
-            ("SCENE_SHINES", 0.0),
-            ("SCENE_WET", 1.0),
-            ("WET_SURFACES", 0.0),
-        ],
-        text: None,
-        tol: WATER,
-        run,
-    };
+    let case =
+        |name, run| KernelCase { overrides: OVERRIDES, ..KernelCase::new(name, &TRACE_KERNEL, WATER, run) };
     vec![
         case("main_trace: puddles from near", case_near),
         case("main_trace: puddles from afar", case_far),

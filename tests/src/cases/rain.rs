@@ -49,10 +49,9 @@ use glam::{DVec3, Vec2, Vec3, Vec4};
 use super::drop_light::{atlas, lamps};
 use super::scene::{DULL, lit_scene, scene};
 use crate::Domain::{Made, Uniform};
-use crate::compare::{Cpu, Gpu as FromGpu, POISON};
+use crate::compare::POISON;
 use crate::function::Run;
 use crate::kept::kept;
-use crate::signature::WordKind;
 use crate::words::IntoWords as _;
 use crate::{FunctionCase, KernelCase, Tol};
 
@@ -109,21 +108,6 @@ fn onto(clean: &[[f32; 4]], frame: &RenderFrame, eye: Vec3, drops: &mut [Falling
             let out = drop.diameter * (0.3 * f32::from(k % 7) - 0.9);
             drop.position = (eye + direction * (distance - out)).as_dvec3();
         }
-    }
-}
-
-fn words(texels: &[[f32; 4]]) -> Vec<u32> {
-    texels.iter().flatten().map(|v| v.to_bits()).collect()
-}
-
-fn run(width: u32, cpu: &[[f32; 4]], gpu: &[[f32; 4]]) -> Run {
-    Run {
-        arguments: (0..cpu.len() as u32)
-            .map(|i| vec![((i % width) as f32).to_bits(), ((i / width) as f32).to_bits()])
-            .collect(),
-        cpu: Cpu(words(cpu)),
-        gpu: FromGpu(words(gpu)),
-        kinds: vec![WordKind::Float; 4],
     }
 }
 
@@ -373,14 +357,14 @@ fn masks_case(
         Part::Capture | Part::CaptureBySamples => {
             // The finest level: the others are the kernel of the reduction.
             let finest = 64 * 64;
-            Ok(run(64, &capture.texels[..finest], &pass.environment_texels()?[..finest]))
+            Ok(Run::of_pixels(64, &capture.texels[..finest], &pass.environment_texels()?[..finest]))
         }
         Part::Means | Part::MadeMeans | Part::Chords | Part::Profiles => {
             gpu.submit(&pass.lamps())?;
             gpu.submit(&pass.streaks())?;
             let wanted = entries(&rain.profiles, part);
             let of_part = |table: &[[f32; 4]]| wanted.iter().map(|&k| table[k]).collect::<Vec<_>>();
-            Ok(run(STREAK_RAYS, &of_part(&table().entries), &of_part(&pass.streak_table()?)))
+            Ok(Run::of_pixels(STREAK_RAYS, &of_part(&table().entries), &of_part(&pass.streak_table()?)))
         }
         Part::Drops => {
             let drawn = [pass.lamps(), pass.streaks(), pass.medium(), vec![pass.drops()]];
@@ -389,7 +373,7 @@ fn masks_case(
                 let medium = rain.medium_light(lights).layer(clean);
                 rain.layer(clean, masks, capture, &table(), &lights.light(&rain.rows), &medium)
             });
-            Ok(run(SIZE[0], &layer, &pass.layer()?))
+            Ok(Run::of_pixels(SIZE[0], &layer, &pass.layer()?))
         }
         Part::Layers => {
             let drawn = [pass.lamps(), pass.streaks(), pass.medium(), vec![pass.drops()]];
@@ -399,24 +383,24 @@ fn masks_case(
             gpu.submit(&[pass.layers().expect("layers")])?;
             let layers = rain.layers.expect("layers").lit(rain.frame.camera.eye, &view);
             layers.before(&rain.frame, clean, capture, &mut layer);
-            Ok(run(SIZE[0], &layer, &pass.layer()?))
+            Ok(Run::of_pixels(SIZE[0], &layer, &pass.layer()?))
         }
         Part::Open => {
             let cells = found().len() - 2 * clean.len();
-            Ok(run(16, &found()[..cells], &pass.medium_found()?[..cells]))
+            Ok(Run::of_pixels(16, &found()[..cells], &pass.medium_found()?[..cells]))
         }
         Part::Medium => {
             gpu.submit(&pass.medium())?;
             let pixels = found().len() - 2 * clean.len();
             let whole = |found: &[[f32; 4]]| found[pixels..].iter().step_by(2).copied().collect::<Vec<_>>();
-            Ok(run(SIZE[0], &whole(&found()), &whole(&pass.medium_found()?)))
+            Ok(Run::of_pixels(SIZE[0], &whole(&found()), &whole(&pass.medium_found()?)))
         }
         Part::Seen => {
             gpu.submit(&pass.medium())?;
             let pixels = found().len() - 2 * clean.len();
             // Which part of a ray chance draws may differ, what comes of it may not.
             let blocks = |found: &[[f32; 4]]| block_means(found[pixels..].iter().skip(1).step_by(2));
-            Ok(run(SIZE[0] / 16, &blocks(&found()), &blocks(&pass.medium_found()?)))
+            Ok(Run::of_pixels(SIZE[0] / 16, &blocks(&found()), &blocks(&pass.medium_found()?)))
         }
         Part::Filter => {
             gpu.submit(&pass.medium())?;
@@ -427,7 +411,7 @@ fn masks_case(
             };
             // From the same findings.
             let medium = rain.medium_light(lights).filtered(clean, &pass.medium_found()?);
-            Ok(run(SIZE[0], &numbers(&medium), &numbers(&pass.layer()?)))
+            Ok(Run::of_pixels(SIZE[0], &numbers(&medium), &numbers(&pass.layer()?)))
         }
     }
 }
@@ -463,7 +447,7 @@ fn compose_case(gpu: &Gpu) -> Result<Run, GpuError> {
     let kernel = ComputeKernel::new(gpu, &COMPOSE_KERNEL, &[])?;
     let bindings = kernel.bind(gpu, &[&size, &plate, &rain, &target])?;
     gpu.submit(&[kernel.dispatch(&bindings, [width.div_ceil(8), height.div_ceil(8), 1])])?;
-    Ok(run(width, &composed, &gpu.read(&target)?))
+    Ok(Run::of_pixels(width, &composed, &gpu.read(&target)?))
 }
 
 const CAPTURED: Tol = Tol::relative(

@@ -32,10 +32,8 @@ use downpour_trace::texture::{texture_taps, texture_wrap};
 use glam::{Affine3A, Vec2, Vec3};
 
 use crate::Domain::{AnyWord, Below, Fixed, Made, OneOf, Uniform, Unit3};
-use crate::compare::{Cpu, Gpu as FromGpu};
 use crate::function::Run;
 use crate::kept::{digest, kept};
-use crate::signature::WordKind;
 use crate::words::{Args, IntoWords as _};
 use crate::{FunctionCase, KernelCase, Tol};
 
@@ -471,36 +469,42 @@ pub(super) fn picture_by(
     let cpu = kept(&key, || SceneView { data: scene, frame: &frame }.picture());
     let pipeline = ScenePipeline::with_samples(gpu, samples)?;
     let gpu = pipeline.picture(&pipeline.upload(scene)?, &frame)?;
-    let words = |picture: &[[f32; 4]]| picture.iter().flatten().map(|v| v.to_bits()).collect();
-    Ok(Run {
-        arguments: (0..SIZE[0] * SIZE[1])
-            .map(|i| [i % SIZE[0], i / SIZE[0]].map(|c| (c as f32).to_bits()).to_vec())
-            .collect(),
-        cpu: Cpu(words(&cpu)),
-        gpu: FromGpu(words(&gpu)),
-        kinds: vec![WordKind::Float; 4],
-    })
+    Ok(Run::of_pixels(SIZE[0], &cpu, &gpu))
+}
+
+/// Parts of a traced scene, each 1 if it has them, else 0: the overrides of the kernel.
+#[derive(Clone, Copy)]
+pub(super) struct Parts {
+    pub(super) wet_panes: f64,
+    pub(super) impostors: f64,
+    pub(super) pane: f64,
+    pub(super) shines: f64,
+    pub(super) puddles: f64,
+    pub(super) wet: f64,
+}
+
+impl Parts {
+    pub(super) const NONE: Self =
+        Self { wet_panes: 0.0, impostors: 0.0, pane: 0.0, shines: 0.0, puddles: 0.0, wet: 0.0 };
+
+    /// The overrides, sorted by name.
+    pub(super) const fn overrides(self) -> [(&'static str, f64); 6] {
+        [
+            ("GLAZING_PANES", self.wet_panes),
+            ("IMPOSTOR_REFLECTIONS", self.impostors),
+            ("SCENE_PANE", self.pane),
+            ("SCENE_SHINES", self.shines),
+            ("SCENE_WET", self.puddles),
+            ("WET_SURFACES", self.wet),
+        ]
+    }
 }
 
 /// A dry scene of which nothing shines.
-pub(super) const DULL: &[(&str, f64)] = &[
-    ("GLAZING_PANES", 0.0),
-    ("IMPOSTOR_REFLECTIONS", 0.0),
-    ("SCENE_PANE", 0.0),
-    ("SCENE_SHINES", 0.0),
-    ("SCENE_WET", 0.0),
-    ("WET_SURFACES", 0.0),
-];
+pub(super) const DULL: &[(&str, f64)] = &Parts::NONE.overrides();
 
 /// A dry scene of which something does.
-const SHINING: &[(&str, f64)] = &[
-    ("GLAZING_PANES", 0.0),
-    ("IMPOSTOR_REFLECTIONS", 0.0),
-    ("SCENE_PANE", 0.0),
-    ("SCENE_SHINES", 1.0),
-    ("SCENE_WET", 0.0),
-    ("WET_SURFACES", 0.0),
-];
+const SHINING: &[(&str, f64)] = &Parts { shines: 1.0, ..Parts::NONE }.overrides();
 
 const PICTURE: Tol = Tol::relative(
     2.0e-3,
@@ -511,24 +515,9 @@ const PICTURE: Tol = Tol::relative(
 
 /// The cases.
 pub(super) fn kernels() -> Vec<KernelCase> {
-    let case = |name, overrides, run| KernelCase {
-        name,
-        kernel: &TRACE_KERNEL,
-        with: &[],
-        overrides,
-        text: None,
-        tol: PICTURE,
-        run,
-    };
-    let filter = |name, run| KernelCase {
-        name,
-        kernel: &SKYLIGHT_KERNEL,
-        with: &[],
-        overrides: &[],
-        text: None,
-        tol: PICTURE,
-        run,
-    };
+    let case =
+        |name, overrides, run| KernelCase { overrides, ..KernelCase::new(name, &TRACE_KERNEL, PICTURE, run) };
+    let filter = |name, run| KernelCase::new(name, &SKYLIGHT_KERNEL, PICTURE, run);
     vec![
         filter("main_skylight: from above", |gpu| scene_case(gpu, Vec3::new(1.6, 3.4, 2.0), 2)),
         filter("main_skylight: rays of one pixel in 16 that look for light", |gpu| {

@@ -11,11 +11,9 @@ use downpour_trace::temporal::{FrameLight, LightWindow, PixelLight, TemporalFram
 use glam::{DVec3, Vec3};
 
 use super::scene::shining_scene;
-use crate::compare::{Cpu, Gpu as FromGpu};
 use crate::domain::Domain::{Made, Uniform};
 use crate::function::Run;
 use crate::kept::{digest, kept};
-use crate::signature::WordKind;
 use crate::words::IntoWords as _;
 use crate::{FunctionCase, KernelCase, Tol};
 
@@ -92,14 +90,8 @@ fn temporal_run(gpu: &Gpu) -> Result<Run, GpuError> {
         gpu.submit(&[dispatch])?;
     }
     let of_gpu: Vec<[f32; 4]> = gpu.read(&picture)?;
-    Ok(Run {
-        arguments: (0..SIZE[0] * SIZE[1])
-            .map(|i| [i % SIZE[0], i / SIZE[0]].map(|c| (c as f32).to_bits()).to_vec())
-            .collect(),
-        cpu: Cpu(cpu.iter().flat_map(|change| change.extend(0.0).to_array().map(f32::to_bits)).collect()),
-        gpu: FromGpu(of_gpu.iter().flatten().map(|v| v.to_bits()).collect()),
-        kinds: vec![WordKind::Float; 4],
-    })
+    let cpu: Vec<[f32; 4]> = cpu.iter().map(|change| change.extend(0.0).to_array()).collect();
+    Ok(Run::of_pixels(SIZE[0], &cpu, &of_gpu))
 }
 
 /// The cases.

@@ -10,7 +10,7 @@ use downpour_trace::wet::{wet_arrival, wet_corner, wet_fraction, wet_noise, wet_
 use downpour_weather::WetnessAt;
 use glam::Vec3;
 
-use super::scene::{PictureRays, picture_by, scene, shining_scene};
+use super::scene::{Parts, PictureRays, picture_by, scene, shining_scene};
 use crate::Domain::{AnyWord, Below, Or, Uniform, Unit3};
 use crate::function::Run;
 use crate::words::{Args, IntoWords as _};
@@ -106,33 +106,16 @@ const PICTURE: Tol = Tol::relative(
 )
 .with_outliers(6.0e-3);
 
-/// Overrides of a wet scene of which something shines, or nothing.
-const fn wet(shines: f64) -> [(&'static str, f64); 6] {
-    [
-        ("GLAZING_PANES", 0.0),
-        ("IMPOSTOR_REFLECTIONS", 0.0),
-        ("SCENE_PANE", 0.0),
-        ("SCENE_SHINES", shines),
-        ("SCENE_WET", 0.0),
-        ("WET_SURFACES", 1.0),
-    ]
-}
+/// A wet scene of which nothing shines.
+const DULL: &[(&str, f64)] = &Parts { wet: 1.0, ..Parts::NONE }.overrides();
 
-const DULL: &[(&str, f64)] = &wet(0.0);
-
-const SHINING: &[(&str, f64)] = &wet(1.0);
+/// A wet scene of which something does.
+const SHINING: &[(&str, f64)] = &Parts { wet: 1.0, shines: 1.0, ..Parts::NONE }.overrides();
 
 /// The cases.
 pub(super) fn kernels() -> Vec<KernelCase> {
-    let case = |name, overrides, run| KernelCase {
-        name,
-        kernel: &TRACE_KERNEL,
-        with: &[],
-        overrides,
-        text: None,
-        tol: PICTURE,
-        run,
-    };
+    let case =
+        |name, overrides, run| KernelCase { overrides, ..KernelCase::new(name, &TRACE_KERNEL, PICTURE, run) };
     vec![
         case("main_trace: wet surfaces from near", DULL, case_near),
         case("main_trace: wet surfaces under the sky alone", DULL, case_far),

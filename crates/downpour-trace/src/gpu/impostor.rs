@@ -1,6 +1,6 @@
-//! The buffer of mirrored things on a GPU: [`impostor`](crate::impostor).
+//! The reflection buffer on a GPU: [`impostor`](crate::impostor).
 
-use std::sync::{Arc, OnceLock};
+use std::sync::OnceLock;
 
 use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, made_once, wgpu};
 use downpour_shaders::render::impostor::{IMPOSTOR_BLUR_KERNEL, IMPOSTOR_DRAW_KERNEL};
@@ -11,7 +11,7 @@ use crate::impostor::blur::pass_count;
 /// Pipelines that draw the buffer, made for the first scene that has one.
 #[derive(Clone, Debug, Default)]
 pub struct ImpostorPipeline {
-    kernels: Arc<OnceLock<[ComputeKernel; 2]>>,
+    kernels: OnceLock<[ComputeKernel; 2]>,
 }
 
 /// The buffer of a frame, ready to be drawn.
@@ -23,7 +23,7 @@ pub struct ImpostorPass<'a> {
 }
 
 impl ImpostorPipeline {
-    /// Prepares the buffer of a frame; `None` if rays find what its scene's surfaces mirror.
+    /// Prepares the buffer of a frame; `None` if reflections are found by rays.
     ///
     /// # Errors
     /// Returns the error of the GPU.
@@ -45,8 +45,8 @@ impl ImpostorPipeline {
         })?;
         let [width, height] = frame.camera.size().map(|edge| edge.div_ceil(2));
         let bytes = u64::from(width) * u64::from(height) * 8;
-        let mut drawn = buffers.buffer("mirrored things", bytes, wgpu::BufferUsages::STORAGE)?;
-        let mut blurred = buffers.buffer("mirrored things, blurred", bytes, wgpu::BufferUsages::STORAGE)?;
+        let mut drawn = buffers.buffer("reflection buffer", bytes, wgpu::BufferUsages::STORAGE)?;
+        let mut blurred = buffers.buffer("reflection buffer, blurred", bytes, wgpu::BufferUsages::STORAGE)?;
         let list = buffers.storage("billboards", &impostors.rows())?;
         let uniform = buffers.uniform("frame", frame)?;
         let mut turns = vec![(draw, draw.bind_at(buffers, [(0, &uniform), (1, &list), (2, &drawn)])?)];

@@ -55,7 +55,7 @@ impl ScenePipeline {
         let most = traced.iter().map(|rows| rows.len() as u32).max().unwrap_or(0);
         let states = if most > 0 { self.states(buffers, &of_map.camera, most)? } else { None };
         let to = [&environment, &nothing, &nothing_else];
-        let of_rays = RayBuffers { mirrored: None, to, states: states.as_ref() };
+        let of_rays = RayBuffers { reflections: None, to, states: states.as_ref() };
         let mut finest = Vec::new();
         for rows in traced {
             let of_rows = RenderFrame { first_row: rows.start, ..of_map };

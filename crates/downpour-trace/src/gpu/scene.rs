@@ -184,7 +184,7 @@ impl ScenePipeline {
         let states = self.states(buffers, &frame.camera, rows.min(frame.camera.height))?;
         let impostors = self.impostors.prepare(&self.gpu, buffers, &scene.of, frame)?;
         let of_rays = RayBuffers {
-            mirrored: impostors.as_ref().map(ImpostorPass::drawn),
+            reflections: impostors.as_ref().map(ImpostorPass::drawn),
             to: [&picture, &found_light, &of_others],
             states: states.as_ref(),
         };
@@ -242,25 +242,25 @@ impl ScenePipeline {
         buffers: &impl BufferSource,
         scene: &SceneOnGpu,
         frame: &RenderFrame,
-        RayBuffers { mirrored, to, states }: RayBuffers<'_>,
+        RayBuffers { reflections, to, states }: RayBuffers<'_>,
         rows: u32,
     ) -> Result<SceneRays<'_>, GpuError> {
         let tracer = self.tracer(frame)?;
         let groups = frame.pixels_that_look().workgroups([frame.camera.width, rows]);
         // The kernel has the binding also where it does not read it.
-        let mirrored = (11, mirrored.unwrap_or(&scene.sky));
+        let reflections = (11, reflections.unwrap_or(&scene.sky));
         let Some((seen, states)) = self.seen.as_ref().zip(states) else {
             let uniform = buffers.uniform("frame", frame)?;
             let bound = tracer.bind_at(
                 buffers,
-                scene.buffers(&uniform).into_iter().chain([mirrored]).chain(TO.into_iter().zip(to)),
+                scene.buffers(&uniform).into_iter().chain([reflections]).chain(TO.into_iter().zip(to)),
             )?;
             return Ok(SceneRays { turns: vec![(tracer, bound)], groups });
         };
         let mut turns = Vec::new();
         for turn in 0..frame.grid * frame.grid {
             let uniform = buffers.uniform("frame", &RenderFrame { turn, ..*frame })?;
-            let bound = scene.buffers(&uniform).into_iter().chain([mirrored, (9, states)]);
+            let bound = scene.buffers(&uniform).into_iter().chain([reflections, (9, states)]);
             turns.push((tracer, tracer.bind_at(buffers, bound)?));
         }
         let uniform = buffers.uniform("frame", frame)?;
@@ -278,9 +278,9 @@ fn groups(camera: &Camera, rows: u32) -> [u32; 3] {
 /// Buffers of the rays of a frame, besides its scene's.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RayBuffers<'a> {
-    /// What wet surfaces mirror as billboards, if the frame has some.
-    pub(super) mirrored: Option<&'a wgpu::Buffer>,
-    /// What rays find: the picture, and the light that goes to the filter, of the first surfaces and of others.
+    /// The reflection buffer, if the frame has one.
+    pub(super) reflections: Option<&'a wgpu::Buffer>,
+    /// Output of the rays: the picture, and the light that goes to the filter, of the first surfaces and of others.
     pub(super) to: [&'a wgpu::Buffer; 3],
     /// [`ScenePipeline::states`].
     pub(super) states: Option<&'a wgpu::Buffer>,
@@ -374,8 +374,8 @@ impl ScenePass<'_> {
     /// Those that trace, after those that draw what they look up.
     #[must_use]
     pub fn rays(&self) -> Vec<Dispatch<'_>> {
-        let mirrored = self.impostors.iter().flat_map(ImpostorPass::dispatches);
-        mirrored.chain(self.bands.iter().flat_map(SceneRays::dispatches)).collect()
+        let drawn = self.impostors.iter().flat_map(ImpostorPass::dispatches);
+        drawn.chain(self.bands.iter().flat_map(SceneRays::dispatches)).collect()
     }
 
     /// Those that filter the light of the sky, after them.

@@ -1,11 +1,10 @@
-//! The vertical blur of the buffer of mirrored things. Twin of `shaders/wgsl/render/impostor_blur.wgsl`.
+//! The vertical blur of the reflection buffer. Twin of `shaders/wgsl/render/impostor_blur.wgsl`.
 
-use downpour_math::packing::packing_pack_half;
 use downpour_render::camera::Camera;
 use glam::{UVec2, Vec3};
 use rayon::prelude::*;
 
-use super::unpacked;
+use super::{impostor_pack, impostor_unpack};
 
 /// Standard deviation of the blur, radians.
 pub const BLUR_RAD: f32 = 0.008;
@@ -34,10 +33,7 @@ pub(super) fn blurred(before: &[[u32; 2]], size: UVec2, turn: u32) -> Vec<[u32; 
     (0..size.y)
         .into_par_iter()
         .flat_map_iter(|y| {
-            (0..size.x).map(move |x| {
-                let mean = impostor_blur_mean(before, x, y, size, turn);
-                [packing_pack_half([mean.x, mean.y]), packing_pack_half([mean.z, 0.0])]
-            })
+            (0..size.x).map(move |x| impostor_pack(impostor_blur_mean(before, x, y, size, turn)))
         })
         .collect()
 }
@@ -45,7 +41,7 @@ pub(super) fn blurred(before: &[[u32; 2]], size: UVec2, turn: u32) -> Vec<[u32; 
 /// A texel of a column; beyond its ends, the last one.
 fn impostor_blur_texel(before: &[[u32; 2]], column: u32, row: i32, size: UVec2) -> Vec3 {
     let row = row.clamp(0, size.y as i32 - 1) as u32;
-    unpacked(before[(row * size.x + column) as usize])
+    impostor_unpack(before[(row * size.x + column) as usize])
 }
 
 /// The mean of pass `turn` at a texel.
@@ -66,11 +62,11 @@ mod tests {
         let size = UVec2::new(1, 101);
         let camera = Camera { pixel_angle: 0.5 * BLUR_RAD / 6.0, ..Camera::default() };
         let mut texels = vec![[0; 2]; 101];
-        texels[50] = [packing_pack_half([1024.0, 0.0]), 0];
+        texels[50] = impostor_pack(Vec3::X * 1024.0);
         for turn in 0..pass_count(&camera) {
             texels = blurred(&texels, size, turn);
         }
-        let light: Vec<f32> = texels.iter().map(|&texel| unpacked(texel).x).collect();
+        let light: Vec<f32> = texels.iter().map(|&texel| impostor_unpack(texel).x).collect();
         let sum: f32 = light.iter().sum();
         assert!((sum / 1024.0 - 1.0).abs() < 2.0e-3, "{sum}");
         let square: f32 =

@@ -1,11 +1,12 @@
-//! The buffer of mirrored things. Twin of `shaders/wgsl/render/impostor_draw.wgsl`.
+//! The reflection buffer. Twin of `shaders/wgsl/render/impostor_draw.wgsl`.
 
-use downpour_math::packing::{packing_octahedral_encode, packing_octahedral_texel, packing_pack_half};
+use downpour_math::packing::{packing_octahedral_encode, packing_octahedral_texel};
 use downpour_shaders::render::impostor::{IMPOSTOR_MAX, IMPOSTOR_NEAREST, IMPOSTOR_PROBE, IMPOSTOR_STRETCH};
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::blur::{blurred, pass_count};
+use super::impostor_pack;
 use crate::billboards::Impostors;
 use crate::scene::SceneView;
 
@@ -28,7 +29,7 @@ pub fn impostor_draw_cover(offset: Vec2, half: Vec2, stretch: f32) -> f32 {
 }
 
 impl SceneView<'_> {
-    /// The buffer of a frame: two pairs of halves a texel, rows from the top. Empty if rays find what is mirrored.
+    /// The buffer of a frame: two pairs of halves a texel, rows from the top. Empty if reflections are found by rays.
     #[must_use]
     pub fn mirrored_picture(&self) -> Vec<[u32; 2]> {
         let Some(impostors) = &self.data.impostors else { return Vec::new() };
@@ -38,7 +39,7 @@ impl SceneView<'_> {
             .flat_map_iter(|y| {
                 (0..size.x).map(move |x| {
                     let light = self.impostor_draw_texel(impostors, x, y).min(Vec3::splat(IMPOSTOR_MAX));
-                    [packing_pack_half([light.x, light.y]), packing_pack_half([light.z, 0.0])]
+                    impostor_pack(light)
                 })
             })
             .collect();

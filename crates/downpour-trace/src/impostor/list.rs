@@ -1,4 +1,4 @@
-//! The billboards of a frame, and what is around.
+//! The impostors of a frame: billboards, and the surroundings.
 
 use std::collections::BTreeMap;
 use std::f32::consts::PI;
@@ -29,7 +29,7 @@ const LAMP_RADIUS_M: f32 = 0.1;
 /// Factor of the difference between a color and its gray: the paper's reflections "strongly saturate the dominant colors".
 const SATURATION: f32 = 1.5;
 
-/// Distance ahead of the eye from which what is around is seen, m, and its height over the ground.
+/// Distance ahead of the eye of the position from which the surroundings are seen, m, and its height over the ground.
 const AHEAD_M: f32 = 6.0;
 const ABOVE_M: f32 = 0.3;
 
@@ -42,7 +42,7 @@ const EYE_HEIGHT_M: f32 = 1.6;
 /// Edge of the cells within which corners of triangles count as one, m.
 const SAME_CORNER_M: f32 = 1.0e-3;
 
-/// Something that shines, where it is.
+/// A shining object.
 #[derive(Clone, Copy, Debug)]
 struct Shining {
     low: Vec3,
@@ -50,7 +50,7 @@ struct Shining {
     radiance: Vec3,
 }
 
-/// Finds what the wet surfaces of a scene mirror to an eye: again what `before` has, if it was found for the same.
+/// Finds the impostors of a scene for an eye: those of `before`, if they were found for the same.
 ///
 /// # Errors
 /// [`RenderError`] for an invalid eye.
@@ -67,12 +67,12 @@ pub fn find(
         None => {}
     }
     let eye = viewpoint.eye;
+    // The surroundings are dry, so that they do not depend on the rain.
     let frame = RenderFrame {
         wetness: 0,
         glazing: 0,
         puddle_count: 0,
         pane: 0,
-        impostors: 0,
         suns_out: SCENE_ALL_OUT,
         ..RenderFrame::new(data, viewpoint, [8, 8], 1, 1, 0)?
     };
@@ -97,14 +97,14 @@ pub fn find(
     Ok(Arc::new(Impostors { edge, around, billboards, of }))
 }
 
-/// What the billboards of a scene and an eye depend on.
+/// The basis of the impostors of a scene for an eye.
 fn basis(data: &SceneData, viewpoint: &Viewpoint) -> Basis {
     let first = data.lights as usize;
     let lights = data.table[first..first + (data.light_count * SCENE_LIGHT_ROWS) as usize].to_vec();
     Basis { nodes: data.nodes.clone(), sky: data.sky.clone(), lights, viewpoint: *viewpoint }
 }
 
-/// What is around a position near the ground ahead of the eye.
+/// The surroundings of a position near the ground ahead of the eye.
 fn around(view: &SceneView<'_>, ground: f32, viewpoint: &Viewpoint) -> Vec<Vec3> {
     let eye = viewpoint.eye;
     let forward = Vec3::new(viewpoint.forward.x, 0.0, viewpoint.forward.z).normalize_or_zero();
@@ -183,14 +183,18 @@ fn root(parents: &mut [usize], mut k: usize) -> usize {
     k
 }
 
+/// A position mirrored in level ground.
+fn below_ground(position: Vec3, ground: f32) -> Vec3 {
+    Vec3::new(position.x, 2.0 * ground - position.y, position.z)
+}
+
 /// Position on level ground in which an eye sees a position mirrored.
 fn on_ground(eye: Vec3, position: Vec3, ground: f32) -> Vec3 {
     let (above, below) = ((eye.y - ground).max(1.0e-3), (position.y - ground).max(1.0e-3));
-    let mirrored = Vec3::new(position.x, 2.0 * ground - position.y, position.z);
-    eye + (mirrored - eye) * (above / (above + below))
+    eye + (below_ground(position, ground) - eye) * (above / (above + below))
 }
 
-/// The billboard of something that shines, as far as the ground sees it; `None` if the ground does not.
+/// The billboard of a shining object, as far as the ground sees it; `None` if the ground does not.
 fn mirrored(view: &SceneView<'_>, shining: &Shining, ground: f32) -> Option<Billboard> {
     let eye = view.frame.camera.eye;
     let (middle, size) = (0.5 * (shining.low + shining.high), shining.high - shining.low);
@@ -208,8 +212,7 @@ fn mirrored(view: &SceneView<'_>, shining: &Shining, ground: f32) -> Option<Bill
     let radiance = saturated(shining.radiance * visible);
     let half = 0.5 * Vec2::new(width.max(size.y * 0.02), size.y.max(width * 0.02));
     let is_seen = light_weight(radiance) > 0.0 && radiance.is_finite() && half.min_element() > 0.0;
-    let middle = Vec3::new(middle.x, 2.0 * ground - middle.y, middle.z);
-    is_seen.then_some(Billboard { middle, half, radiance })
+    is_seen.then_some(Billboard { middle: below_ground(middle, ground), half, radiance })
 }
 
 /// A color farther from its gray, of the same luminance.

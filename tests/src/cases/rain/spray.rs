@@ -17,7 +17,7 @@ use downpour_trace::scene::SceneView;
 
 use glam::Vec4;
 
-use super::{ABOVE, BESIDE, INSIDE, LEVEL, Placement, Prepared, SEEN, SIZE, block_means, run};
+use super::{ABOVE, BESIDE, INSIDE, LEVEL, Placement, Prepared, SEEN, SIZE, block_means};
 use crate::Domain::{Made, Uniform};
 use crate::function::Run;
 use crate::kept::kept;
@@ -66,7 +66,7 @@ fn spray_case(gpu: &Gpu, placement: Placement, part: Part) -> Result<Run, GpuErr
             let own = SprayMap::new(&spray, &view);
             let some =
                 |words: &[f32]| words.as_chunks::<4>().0.iter().step_by(13).copied().collect::<Vec<_>>();
-            Ok(run(128, &some(&own.words), &some(&map.words)))
+            Ok(Run::of_pixels(128, &some(&own.words), &some(&map.words)))
         }
         Part::Found => {
             let own = SprayView { frame: &spray, map: &map }.found(&frame.camera, &rain.medium, clean);
@@ -85,12 +85,12 @@ fn spray_case(gpu: &Gpu, placement: Placement, part: Part) -> Result<Run, GpuErr
                 };
                 pixels.iter().map(pixel).collect::<Vec<_>>()
             };
-            Ok(run(SIZE[0], &of(&own), &of(&found)))
+            Ok(Run::of_pixels(SIZE[0], &of(&own), &of(&found)))
         }
         Part::Light => {
             let mut own: Vec<[f32; 4]> = found.iter().map(|row| [0.0, 0.0, 0.0, row[3]]).collect();
             rain.medium_light(&both[0]).light_spray(&mut own);
-            Ok(run(SIZE[0], &numbers(&own, 0), &numbers(&found, 0)))
+            Ok(Run::of_pixels(SIZE[0], &numbers(&own, 0), &numbers(&found, 0)))
         }
         Part::Seen => {
             let mut own: Vec<[f32; 4]> = found.iter().map(|row| [0.0, 0.0, 0.0, row[3]]).collect();
@@ -100,12 +100,12 @@ fn spray_case(gpu: &Gpu, placement: Placement, part: Part) -> Result<Run, GpuErr
                 numbers(rows, 1).into_iter().map(|[r, g, b, _]| [r, g, b, 0.0]).collect::<Vec<_>>()
             };
             let blocks = |rows: &[[f32; 4]]| block_means(lit(rows).iter());
-            Ok(run(SIZE[0] / 16, &blocks(&own), &blocks(&found)))
+            Ok(Run::of_pixels(SIZE[0] / 16, &blocks(&own), &blocks(&found)))
         }
         Part::Blend => {
             let table = rain.streak_table(&masks, capture, &both[1].light(&rain.streak_rows()));
             rain.blend_spray(&spray, &found, (capture, &table), &mut layer);
-            Ok(run(SIZE[0], &layer, &pass.layer()?))
+            Ok(Run::of_pixels(SIZE[0], &layer, &pass.layer()?))
         }
     }
 }

@@ -6,10 +6,8 @@ use downpour_render::gpu::RefinePipeline;
 use downpour_render::refine::refine_pixel;
 use downpour_shaders::render::refine::{REFINE, REFINE_KERNEL};
 
-use crate::compare::{Cpu, Gpu as FromGpu};
 use crate::domain::Domain::{Below, Uniform};
 use crate::function::Run;
-use crate::signature::WordKind;
 use crate::words::IntoWords as _;
 use crate::{FunctionCase, KernelCase, Tol};
 
@@ -30,15 +28,7 @@ fn refine_run(gpu: &Gpu) -> Result<Run, GpuError> {
             *mean = refine_pixel(*mean, next, count);
         }
     }
-    let words = |texels: &[[f32; 4]]| texels.iter().flat_map(|row| row.map(f32::to_bits)).collect();
-    Ok(Run {
-        arguments: (0..pixels)
-            .map(|i| [i % SIZE[0], i / SIZE[0]].map(|c| (c as f32).to_bits()).to_vec())
-            .collect(),
-        cpu: Cpu(words(&mean)),
-        gpu: FromGpu(words(&gpu.read::<[f32; 4]>(&on_gpu)?)),
-        kinds: vec![WordKind::Float; 4],
-    })
+    Ok(Run::of_pixels(SIZE[0], &mean, &gpu.read(&on_gpu)?))
 }
 
 /// The cases.
