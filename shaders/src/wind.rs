@@ -62,7 +62,7 @@ pub static FIELD: Module = Module {
 /// One invocation per cell.
 pub static FIELD_KERNEL: Kernel = Kernel { entry: "main_wind_field", module: &FIELD, workgroup: [4, 4, 4] };
 
-/// How much the wind differs about a position. Twin: `downpour_wind::field_spread`.
+/// Spread of the wind about a position. Twin: `downpour_wind::field_spread`.
 pub static FIELD_SPREAD: Module = Module {
     path: "wind/field_spread.wgsl",
     wgsl: include_str!("../wgsl/wind/field_spread.wgsl"),

@@ -9,8 +9,8 @@ use glam::{Vec2, Vec3};
 /// A shining object, mirrored in level ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Billboard {
-    /// Its middle, below the ground.
-    pub middle: Vec3,
+    /// Its center, below the ground.
+    pub center: Vec3,
     /// Half its width and height, m.
     pub half: Vec2,
     /// Radiance.
@@ -22,8 +22,8 @@ pub struct Billboard {
 pub struct Impostors {
     /// Edge coefficient of reflections: the paper's f0.
     pub edge: f32,
-    /// Radiance of the surroundings, without shining objects: texels of an octahedral map, rows from the top.
-    pub around: Vec<Vec3>,
+    /// Radiance of the environment, without shining objects: texels of an octahedral map, rows from the top.
+    pub environment: Vec<Vec3>,
     /// Shining objects, the farthest first.
     pub billboards: Vec<Billboard>,
     /// The inputs for which they were found.
@@ -53,11 +53,11 @@ impl Impostors {
     /// The rows that the device reads.
     #[must_use]
     pub fn rows(&self) -> Vec<[f32; 4]> {
-        let around = self.around.iter().map(|light| [light.x, light.y, light.z, 0.0]);
+        let environment = self.environment.iter().map(|light| [light.x, light.y, light.z, 0.0]);
         let billboards = self.billboards.iter().flat_map(|billboard| {
-            let (middle, light) = (billboard.middle, billboard.radiance);
-            [[middle.x, middle.y, middle.z, billboard.half.x], [light.x, light.y, light.z, billboard.half.y]]
+            let (center, light) = (billboard.center, billboard.radiance);
+            [[center.x, center.y, center.z, billboard.half.x], [light.x, light.y, light.z, billboard.half.y]]
         });
-        around.chain(billboards).collect()
+        environment.chain(billboards).collect()
     }
 }

@@ -37,7 +37,7 @@ pub struct EmitterNode {
     pub area: f32,
 }
 
-/// What emitters within a sphere may give to a surface: 0 if all of them are below its horizon. `offset`: of the sphere's
+/// Light that emitters within a sphere may give to a surface: 0 if all of them are below its horizon. `offset`: of the sphere's
 /// center from the surface.
 #[must_use]
 pub fn emitter_weight(offset: Vec3, square: f32, power: f32, normal: Vec3) -> f32 {

@@ -246,7 +246,7 @@ pub fn glazing_wander(at: f32, lane: i32, track: i32, seed: u32) -> f32 {
     2.0 * (a + (b - a) * (f * f * (3.0 - 2.0 * f))) - 1.0
 }
 
-/// Where a track of a lane is at a height in m: distance to the right of the middle of its lane, m.
+/// Position of a track of a lane at a height in m: distance to the right of the middle of its lane, m.
 #[must_use]
 pub fn glazing_track(height: f32, lane: i32, track: i32, seed: u32) -> f32 {
     GLAZING_LANE * GLAZING_SWAY * glazing_wander(height / GLAZING_TURN, lane, track, seed)

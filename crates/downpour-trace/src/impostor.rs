@@ -3,7 +3,7 @@
 //! By default reflections are found by rays. In this form, by name, wet ground and puddles show a reflection buffer of half the
 //! picture's size, in half floats:
 //!
-//! - the surroundings, by a small environment map from near the ground ahead of the eye;
+//! - a small environment map from near the ground ahead of the eye;
 //! - billboards of lamps and of groups of triangles that shine ([`list`]), their colors more saturated, mirrored in level ground and
 //!   stretched toward the viewer ([`draw`]);
 //! - blurred vertically, pass by pass ([`blur`]).

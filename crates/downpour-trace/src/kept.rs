@@ -1,7 +1,7 @@
 //! A picture of a scene that stays from picture to picture: while neither the scene nor the eye changes, it is refined by one more frame of
 //! rays each time, up to a number of frames, and then costs nothing.
 //!
-//! What moves the scene's light by less than an eye can tell does not count: surfaces that get wetter step by step.
+//! Changes of the scene's light by less than an eye can tell do not count: surfaces that get wetter step by step.
 
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ const MIN_WETTING: f32 = 1.0 / 128.0;
 /// Fluxes of rain that surfaces meet, for which wetness is compared.
 const FLUXES: [f32; 3] = [1.0, 0.2, 0.04];
 
-/// What of a plate stays for later pictures, and what earlier ones have left for it.
+/// Parts of a plate that stay for later pictures, and those that earlier ones have left for it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PlateUse {
     /// Frames of rays over which the plate of a scene that stands still is refined from picture to picture ([`KeptPlate`]); 0: each

@@ -40,7 +40,7 @@ pub fn picture_frame(
     Ok(RenderFrame { suns_out: u32::from(traced), ..frame }.with_ray_spacing(options.ray_spacing))
 }
 
-/// What of a scene stays on the CPU from picture to picture.
+/// Parts of a scene that stay on the CPU from picture to picture.
 #[derive(Clone, Debug, Default)]
 pub struct KeptScene {
     /// Radiance and distance of each pixel.

@@ -153,7 +153,7 @@ impl SceneData {
         self.mix(hit, |c| c.color.into())
     }
 
-    /// Where a ray's cone, of a width in m at the hit, meets the triangle: as wide across the ray, and in the direction in which the ray
+    /// Footprint of a ray's cone, of a width in m at the hit, on the triangle: as wide across the ray, and in the direction in which the ray
     /// goes over the triangle longer by the cosine between ray and normal.
     fn surface_footprint(
         &self,

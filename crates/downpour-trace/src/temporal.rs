@@ -99,7 +99,7 @@ impl<T> LightHistory<T> {
 /// Light of sky and surfaces that each pixel of a picture has found.
 #[derive(Clone, Debug, Default)]
 pub struct PixelLight {
-    /// What its own rays have found, and where.
+    /// Light that its own rays have found, with its positions.
     pub ambient: Vec<TraceAmbient>,
     /// Means of it over neighbors, and the variance of their luminance: on the diffuse base, and in the first gloss or mirror.
     pub means: Vec<[Vec4; 2]>,

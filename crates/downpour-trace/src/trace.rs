@@ -147,7 +147,7 @@ impl TraceSum {
     }
 }
 
-/// What the samples of a pixel have found: on the surface that the first of them shows, and on another one.
+/// Sums of the light of a pixel's samples: on the surface that the first of them shows, and on another one.
 #[derive(Clone, Copy, Debug)]
 struct TracePair {
     first: TraceSum,

@@ -1,4 +1,4 @@
-//! What the camera's ray through the middle of each pixel meets, for those who need to know it: how wet it is, the depth of the water
+//! Surface that the camera's ray through the middle of each pixel meets, for those who need to know it: how wet it is, the depth of the water
 //! on it, and how it moves on the picture.
 
 use downpour_render::camera::EyeMotion;

@@ -54,7 +54,7 @@ pub(crate) const WET_ROWS_THAT_CHANGE: usize = 1;
 /// Wetness of the surfaces of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SceneWetness {
-    /// How wet.
+    /// Wetness.
     pub at: WetnessAt,
     /// Direction that the rain comes from; its height is above 0.
     pub towards: Vec3,

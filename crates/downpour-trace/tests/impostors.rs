@@ -94,7 +94,7 @@ fn a_lamp_is_mirrored_below_itself_and_stretched_toward_the_viewer() -> Outcome 
     let impostors = lit.impostors.as_ref().ok_or("no billboards")?;
     assert_eq!(impostors.billboards.len(), 1);
     let mirrored = Vec3::new(LAMP.x, 2.0 * GROUND_M - LAMP.y, LAMP.z);
-    assert!(impostors.billboards[0].middle.distance(mirrored) < 1.0e-4);
+    assert!(impostors.billboards[0].center.distance(mirrored) < 1.0e-4);
     // The same light without its billboard.
     let mut bare = Impostors::clone(impostors);
     bare.billboards.clear();
@@ -152,7 +152,7 @@ fn triangles_that_shine_and_touch_are_one_billboard() -> Outcome {
     assert_eq!(found.billboards.len(), 2);
     for billboard in &found.billboards {
         assert!((billboard.half.y - 0.4).abs() < 1.0e-4, "{billboard:?}");
-        assert!((billboard.middle.y - (GROUND_M - 2.0)).abs() < 1.0e-4, "{billboard:?}");
+        assert!((billboard.center.y - (GROUND_M - 2.0)).abs() < 1.0e-4, "{billboard:?}");
     }
     // Found again for the same scene and eye, and anew for another.
     let again = list::find(&signs, &view(), 0.0, Some(found))?;
@@ -210,6 +210,6 @@ fn an_eye_that_looks_straight_down_has_impostors() -> Outcome {
     let down = Viewpoint { forward: Vec3::NEG_Y, up: Vec3::NEG_Z, ..view() };
     let found = list::find(&lit, &down, 0.5, None)?;
     assert_eq!(found.billboards.len(), 1);
-    assert!(found.around.iter().all(|light| light.is_finite() && light.min_element() >= 0.0));
+    assert!(found.environment.iter().all(|light| light.is_finite() && light.min_element() >= 0.0));
     Ok(())
 }

@@ -70,7 +70,7 @@ fn medium(velocity: Vec3) -> Outcome<RainMedium> {
     Ok(RainMedium::new(&rain, &resolved, masks(), &options)?)
 }
 
-/// What is seen, and of so many columns and rows.
+/// Camera, and columns and rows of its picture.
 #[derive(Clone, Copy)]
 struct Shot {
     eye: Vec3,

@@ -42,7 +42,7 @@ fn masks() -> &'static DropMasks {
     MASKS.get_or_init(|| DropMasks::trace(1.333).expect("masks"))
 }
 
-/// What the rain takes out of each pixel, of pictures whose drops from some size on the picture on are drawn one by one.
+/// Extinction by the rain in each pixel, of pictures whose drops from some size on the picture on are drawn one by one.
 fn taken(lines: u32, least_pixels: f64, grain: MediumGrain, time_s: f64) -> Outcome<Vec<f64>> {
     let law = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 40.0)?;
     let pixel_angle = 2.0 * HALF / f64::from(lines);

@@ -64,7 +64,7 @@ fn mean(picture: &[[f32; 4]]) -> f64 {
     picture.iter().map(|pixel| f64::from(pixel[1])).sum::<f64>() / picture.len() as f64
 }
 
-/// Where an eye sees a ground at an angle from the normal.
+/// Position of an eye that sees a ground at an angle from the normal.
 fn seen_at(degrees: f64) -> Vec3 {
     let angle = degrees.to_radians();
     Vec3::new(exact::sin(angle) as f32, exact::cos(angle) as f32, 0.0) * 3.0

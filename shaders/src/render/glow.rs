@@ -42,5 +42,5 @@ pub static GLOW_UP_KERNEL: Kernel = kernel("main_glow_up");
 /// A pass of Kawase's filter: one invocation per pixel.
 pub static GLOW_KAWASE_KERNEL: Kernel = kernel("main_glow_kawase");
 
-/// What comes less what was taken: one invocation per pixel.
+/// Light that comes less light that was taken: one invocation per pixel.
 pub static GLOW_ADD_KERNEL: Kernel = kernel("main_glow_add");

@@ -124,7 +124,7 @@ pub static MEDIUM_SPREAD: Module = Module {
     uses: &[&MEDIUM_CONSTANTS, &SCENE_CONSTANTS, &MEDIUM, &LIGHT, &DATA],
 };
 
-/// How drops and fog scatter light. Twin: `downpour_render::rain::medium::phase`.
+/// Phase functions of drops and fog. Twin: `downpour_render::rain::medium::phase`.
 pub static MEDIUM_PHASE: Module = Module {
     path: "render/medium_phase.wgsl",
     wgsl: include_str!("../../wgsl/render/medium_phase.wgsl"),

@@ -1,14 +1,14 @@
-// The reflection buffer: the surroundings, from a small environment map, and billboards of shining objects, mirrored in level ground and
+// The reflection buffer: a small environment map, and billboards of shining objects, mirrored in level ground and
 // stretched toward the viewer.
 // Twin: downpour_trace::impostor::draw.
 
-// Texels of an octahedral map, IMPOSTOR_PROBE along an edge; then two rows for each billboard, the farthest first: its mirrored middle and
+// Texels of an octahedral map, IMPOSTOR_PROBE along an edge; then two rows for each billboard, the farthest first: its mirrored center and
 // half its width; its radiance and half its height, m.
 @group(0) @binding(1) var<storage, read> impostor_list: array<vec4f>;
 @group(0) @binding(2) var<storage, read_write> impostor_drawn: array<vec2u>;
 
-// Radiance around in a direction, bilinear.
-fn impostor_draw_around(direction: vec3f) -> vec3f {
+// Radiance of the environment in a direction, bilinear.
+fn impostor_draw_environment(direction: vec3f) -> vec3f {
     let at = (packing_octahedral_encode(direction) * 0.5 + 0.5) * f32(IMPOSTOR_PROBE) - 0.5;
     let low = floor(at);
     let part = at - low;
@@ -27,7 +27,7 @@ fn impostor_draw_overlap(offset: f32, half: f32) -> f32 {
     return clamp(min(offset + 0.5, half) - max(offset - 0.5, -half), 0.0, 1.0);
 }
 
-// Coverage of a texel by a billboard of half size `half` at an offset from its middle, right and down, in texels. It is stretched down by
+// Coverage of a texel by a billboard of half size `half` at an offset from its center, right and down, in texels. It is stretched down by
 // `stretch` texels, over which it fades; what it gives in all stays the same.
 fn impostor_draw_cover(offset: vec2f, half: vec2f, stretch: f32) -> f32 {
     let across = impostor_draw_overlap(offset.x, half.x);
@@ -43,7 +43,7 @@ fn impostor_draw_texel(x: u32, y: u32) -> vec3f {
     let camera = render_frame.camera;
     let at = vec2f(f32(x) + 0.5, f32(y) + 0.5);
     let seen = camera_direction(camera, 2.0 * at.x, 2.0 * at.y);
-    var sum = impostor_draw_around(vec3f(seen.x, -seen.y, seen.z));
+    var sum = impostor_draw_environment(vec3f(seen.x, -seen.y, seen.z));
     let texel_angle = 2.0 * camera.pixel_angle;
     let stretch = IMPOSTOR_STRETCH / texel_angle;
     for (var k = 0u; k + 1u < render_frame.impostors; k += 1u) {
@@ -55,9 +55,9 @@ fn impostor_draw_texel(x: u32, y: u32) -> vec3f {
         if depth < IMPOSTOR_NEAREST {
             continue;
         }
-        let middle = camera_project(camera, from_eye) * 0.5;
+        let center = camera_project(camera, from_eye) * 0.5;
         let half = vec2f(place.w, light.w) / (depth * texel_angle);
-        let cover = impostor_draw_cover(at - middle, half, stretch);
+        let cover = impostor_draw_cover(at - center, half, stretch);
         sum += (light.xyz - sum) * cover;
     }
     return sum;

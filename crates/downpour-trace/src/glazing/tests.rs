@@ -56,7 +56,7 @@ fn drops_hold_the_rain_that_has_met_them() {
     }
 }
 
-/// What meets a lane of 30 mm over half of the 3 m comes down it in heads of 60 mm^3.
+/// Rain that meets a lane of 30 mm over half of the 3 m comes down it in heads of 60 mm^3.
 #[test]
 fn what_meets_the_glass_runs_off() {
     let at = Vec2::new(0.4, 1.5);

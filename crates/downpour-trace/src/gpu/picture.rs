@@ -125,7 +125,7 @@ pub struct PictureRenderer {
 /// Use of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PictureUse {
-    /// What of its plate stays for later pictures.
+    /// Parts of its plate that stay for later pictures.
     pub plate: PlateUse,
     /// Way to the pixels of a picture that is only displayed: [`PictureOnGpu::begin_display`].
     pub tone: Option<Tone>,

@@ -32,7 +32,7 @@ const TO: [u32; 3] = [7, 8, 10];
 /// Rows of the table that are compared and written together.
 const ROWS_PER_BLOCK: usize = 16;
 
-/// How a device comes to the samples of a pixel.
+/// Number of dispatches for the samples of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SampleDispatches {
     /// All of them in one dispatch.
@@ -44,7 +44,7 @@ pub enum SampleDispatches {
 }
 
 impl SampleDispatches {
-    /// What a device needs.
+    /// The number that a device needs.
     fn of(gpu: &Gpu) -> Self {
         let buffers = gpu.device().limits().max_storage_buffers_per_shader_stage;
         let apart = gpu.adapter().is_software() || buffers < TRACE_STORAGE_BUFFERS;

@@ -15,7 +15,7 @@ pub struct TemporalPipeline {
 /// Light of sky and surfaces that a frame has found, on the device.
 #[derive(Clone, Debug)]
 pub struct LightOnGpu {
-    /// What the rays of each pixel have found.
+    /// Light that the rays of each pixel have found.
     pub ambient: wgpu::Buffer,
     /// Means of it over neighbors.
     pub means: wgpu::Buffer,

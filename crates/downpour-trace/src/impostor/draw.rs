@@ -16,7 +16,7 @@ pub fn impostor_draw_overlap(offset: f32, half: f32) -> f32 {
     ((offset + 0.5).min(half) - (offset - 0.5).max(-half)).clamp(0.0, 1.0)
 }
 
-/// Coverage of a texel by a billboard of half size `half` at an offset from its middle, right and down, in texels. It is stretched down
+/// Coverage of a texel by a billboard of half size `half` at an offset from its center, right and down, in texels. It is stretched down
 /// by `stretch` texels, over which it fades; what it gives in all stays the same.
 #[must_use]
 pub fn impostor_draw_cover(offset: Vec2, half: Vec2, stretch: f32) -> f32 {
@@ -54,18 +54,18 @@ impl SceneView<'_> {
         let camera = &self.frame.camera;
         let at = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
         let seen = camera.camera_direction(2.0 * at.x, 2.0 * at.y);
-        let mut sum = impostors.impostor_draw_around(Vec3::new(seen.x, -seen.y, seen.z));
+        let mut sum = impostors.impostor_draw_environment(Vec3::new(seen.x, -seen.y, seen.z));
         let texel_angle = 2.0 * camera.pixel_angle;
         let stretch = IMPOSTOR_STRETCH / texel_angle;
         for billboard in &impostors.billboards {
-            let from_eye = billboard.middle - camera.eye;
+            let from_eye = billboard.center - camera.eye;
             let depth = from_eye.dot(camera.forward);
             if depth < IMPOSTOR_NEAREST {
                 continue;
             }
-            let middle = camera.camera_project(from_eye) * 0.5;
+            let center = camera.camera_project(from_eye) * 0.5;
             let half = billboard.half / (depth * texel_angle);
-            let cover = impostor_draw_cover(at - middle, half, stretch);
+            let cover = impostor_draw_cover(at - center, half, stretch);
             sum += (billboard.radiance - sum) * cover;
         }
         sum
@@ -73,8 +73,8 @@ impl SceneView<'_> {
 }
 
 impl Impostors {
-    /// Radiance around in a direction, bilinear.
-    fn impostor_draw_around(&self, direction: Vec3) -> Vec3 {
+    /// Radiance of the environment in a direction, bilinear.
+    fn impostor_draw_environment(&self, direction: Vec3) -> Vec3 {
         let place = packing_octahedral_encode(direction.to_array());
         let at = place.map(|x| (x * 0.5 + 0.5) * IMPOSTOR_PROBE as f32 - 0.5);
         let low = at.map(f32::floor);
@@ -86,7 +86,7 @@ impl Impostors {
                 std::array::from_fn(|axis| if upper[axis] == 1 { part[axis] } else { 1.0 - part[axis] });
             let [column, row] =
                 packing_octahedral_texel(IMPOSTOR_PROBE, low[0] as i32 + upper[0], low[1] as i32 + upper[1]);
-            sum += self.around[(row * IMPOSTOR_PROBE + column) as usize] * (weight[0] * weight[1]);
+            sum += self.environment[(row * IMPOSTOR_PROBE + column) as usize] * (weight[0] * weight[1]);
         }
         sum
     }

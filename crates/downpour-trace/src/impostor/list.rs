@@ -1,4 +1,4 @@
-//! The impostors of a frame: billboards, and the surroundings.
+//! The impostors of a frame: billboards, and an environment map.
 
 use std::collections::BTreeMap;
 use std::f32::consts::PI;
@@ -29,7 +29,7 @@ const LAMP_RADIUS_M: f32 = 0.1;
 /// Factor of the difference between a color and its gray: the paper's reflections "strongly saturate the dominant colors".
 const SATURATION: f32 = 1.5;
 
-/// Distance ahead of the eye of the position from which the surroundings are seen, m, and its height over the ground.
+/// Distance of the environment map ahead of the eye, m, and its height over the ground.
 const AHEAD_M: f32 = 6.0;
 const ABOVE_M: f32 = 0.3;
 
@@ -67,7 +67,7 @@ pub fn find(
         None => {}
     }
     let eye = viewpoint.eye;
-    // The surroundings are dry, so that they do not depend on the rain.
+    // The environment is dry, so that it does not depend on the rain.
     let frame = RenderFrame {
         wetness: 0,
         glazing: 0,
@@ -79,22 +79,22 @@ pub fn find(
     let view = SceneView { data, frame: &frame };
     let below = data.surface_hit(eye, Vec3::NEG_Y, frame.nearest, BVH_FAR);
     let ground = eye.y - below.map_or(EYE_HEIGHT_M, |hit| hit.distance);
-    let around = around(&view, ground, viewpoint);
+    let environment = environment(&view, ground, viewpoint);
     let mut found: Vec<(f32, Billboard)> = lamps(&view, ground)
         .into_iter()
         .chain(groups(data))
         .filter_map(|shining| mirrored(&view, &shining, ground))
         .map(|billboard| {
-            let square = billboard.middle.distance_squared(eye).max(1.0e-4);
+            let square = billboard.center.distance_squared(eye).max(1.0e-4);
             (light_weight(billboard.radiance) * billboard.half.element_product() / square, billboard)
         })
         .collect();
     found.sort_by(|(a, _), (b, _)| b.total_cmp(a));
     found.truncate(MAX_BILLBOARDS);
     let mut billboards: Vec<Billboard> = found.into_iter().map(|(_, billboard)| billboard).collect();
-    let from_eye = |billboard: &Billboard| billboard.middle.distance_squared(eye);
+    let from_eye = |billboard: &Billboard| billboard.center.distance_squared(eye);
     billboards.sort_by(|a, b| from_eye(b).total_cmp(&from_eye(a)));
-    Ok(Arc::new(Impostors { edge, around, billboards, of }))
+    Ok(Arc::new(Impostors { edge, environment, billboards, of }))
 }
 
 /// The basis of the impostors of a scene for an eye.
@@ -104,8 +104,8 @@ fn basis(data: &SceneData, viewpoint: &Viewpoint) -> Basis {
     Basis { nodes: data.nodes.clone(), sky: data.sky.clone(), lights, viewpoint: *viewpoint }
 }
 
-/// The surroundings of a position near the ground ahead of the eye.
-fn around(view: &SceneView<'_>, ground: f32, viewpoint: &Viewpoint) -> Vec<Vec3> {
+/// Environment map of a position near the ground ahead of the eye.
+fn environment(view: &SceneView<'_>, ground: f32, viewpoint: &Viewpoint) -> Vec<Vec3> {
     let eye = viewpoint.eye;
     let forward = Vec3::new(viewpoint.forward.x, 0.0, viewpoint.forward.z).normalize_or_zero();
     let start = Vec3::new(eye.x, ground + ABOVE_M, eye.z);
@@ -197,22 +197,22 @@ fn on_ground(eye: Vec3, position: Vec3, ground: f32) -> Vec3 {
 /// The billboard of a shining object, as far as the ground sees it; `None` if the ground does not.
 fn mirrored(view: &SceneView<'_>, shining: &Shining, ground: f32) -> Option<Billboard> {
     let eye = view.frame.camera.eye;
-    let (middle, size) = (0.5 * (shining.low + shining.high), shining.high - shining.low);
-    if middle.y <= ground {
+    let (center, size) = (0.5 * (shining.low + shining.high), shining.high - shining.low);
+    if center.y <= ground {
         return None;
     }
-    let from = on_ground(eye, middle, ground) + Vec3::Y * (4.0 * view.frame.nearest);
-    let offset = middle - from;
+    let from = on_ground(eye, center, ground) + Vec3::Y * (4.0 * view.frame.nearest);
+    let offset = center - from;
     let distance = offset.length();
     // Across the view.
-    let along = Vec2::new(middle.x - eye.x, middle.z - eye.z).normalize_or(Vec2::X);
+    let along = Vec2::new(center.x - eye.x, center.z - eye.z).normalize_or(Vec2::X);
     let width = (size.x * along.y).abs() + (size.z * along.x).abs();
     let reach = 0.5 * size.length() + view.frame.nearest;
     let visible = view.scene_visibility(from, offset / distance.max(1.0e-6), distance - reach);
     let radiance = saturated(shining.radiance * visible);
     let half = 0.5 * Vec2::new(width.max(size.y * 0.02), size.y.max(width * 0.02));
     let is_seen = light_weight(radiance) > 0.0 && radiance.is_finite() && half.min_element() > 0.0;
-    is_seen.then_some(Billboard { middle: below_ground(middle, ground), half, radiance })
+    is_seen.then_some(Billboard { center: below_ground(center, ground), half, radiance })
 }
 
 /// A color farther from its gray, of the same luminance.

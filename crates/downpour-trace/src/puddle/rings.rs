@@ -117,7 +117,7 @@ pub struct RingRows {
     middle: Vec2,
 }
 
-/// Where rings of a puddle are placed in a picture.
+/// Position of a puddle's rings in a picture.
 struct Placing<'a> {
     map: &'a PuddleMap,
     /// Of its map.
@@ -130,7 +130,7 @@ struct Placing<'a> {
     middle: Vec2,
 }
 
-/// What a ring is in a picture: its cell, and its words.
+/// A ring in a picture: its cell, and its words.
 type Placed = (usize, [u32; 2]);
 
 impl Rings {

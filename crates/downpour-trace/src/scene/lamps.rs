@@ -43,7 +43,7 @@ struct SceneArrival {
     irradiance: Vec3,
 }
 
-/// What is asked about the light of lamps on a surface.
+/// Query for the light of lamps on a surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SceneAsked {
     /// Number of lamps that are drawn for all, by what each would give. With 0, or at least as many as there are, all lamps are
@@ -61,7 +61,7 @@ pub(crate) struct SceneAsked {
     pub(crate) spared: bool,
 }
 
-/// What one lamp gives if nothing hides it.
+/// Light of one lamp if nothing hides it.
 struct SceneShare {
     arrival: SceneArrival,
     lit: Vec3,
@@ -78,7 +78,7 @@ pub(crate) struct SceneDirect {
     pub(crate) lit: Vec3,
     /// On the diffuse base, over pi: of surfaces that shine, and of lamps with soft shadows. Means over neighbors are taken of it.
     pub(crate) glow: Vec3,
-    /// What lamps of the latter give if nothing hides them: to the facet, and to the surface with its relief.
+    /// Light of lamps of the latter if nothing hides them: to the facet, and to the surface with its relief.
     pub(crate) flat_light: f32,
     pub(crate) relief_light: f32,
     /// True if another lamp is hidden in part.

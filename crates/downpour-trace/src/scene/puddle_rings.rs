@@ -14,7 +14,7 @@ use half::f16;
 
 use crate::data::SceneData;
 
-/// Where the rings are in the scene's table.
+/// Position of the rings in the scene's table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PuddleRings {
     /// Cells along x and z; 0: there are no rings.
@@ -126,7 +126,7 @@ impl SceneData {
     }
 }
 
-/// How much of rings is shown so far from their middle with a footprint, m: none where waves are smaller than the footprint, and far
+/// Fraction of rings that is shown so far from their middle with a footprint, m: none where waves are smaller than the footprint, and far
 /// away.
 #[must_use]
 pub fn puddle_rings_shown(away: Vec2, reach: f32, footprint: f32) -> f32 {
