@@ -8,8 +8,14 @@ pub const MODULES: &[&Module] = &[&BVH_CONSTANTS, &BVH];
 shared_constants! {
     /// Constants of the traversal.
     BVH_CONSTANTS at "bvh/constants" {
-        /// Size of the traversal stack: maximum depth of a tree.
-        BVH_STACK: u32 = 48;
+        /// Size of the traversal stack: three times the levels of nodes of a tree, and one more.
+        BVH_STACK: u32 = 64;
+        /// A child from this on is a leaf, or none.
+        BVH_LEAF: u32 = 268435456;
+        /// First bit of the number of triangles of a leaf; the bits below are the index of its first triangle.
+        BVH_LEAF_SHIFT: u32 = 28;
+        /// No child.
+        BVH_NO_CHILD: u32 = 4294967295;
         /// Larger than every distance.
         BVH_FAR: f32 = 3.0e38;
         /// Barycentric slack of a triangle: a ray through a shared edge must not slip between two of them.

@@ -167,7 +167,7 @@ fn hosts() -> Vec<Host> {
             steps, halo, half_storage, slope, first_texel),
         host!(PuddleSeed as "PuddleSeed" in &lattice::puddle::PUDDLE_SEED,
             center, per_length, amplitude, lift, reach, shape, unused),
-        host!(BvhNode as "BvhNode" in &bvh::BVH, low, link, high, count),
+        host!(BvhNode as "BvhNode" in &bvh::BVH, low_x, low_y, low_z, high_x, high_y, high_z, child),
         host!(BvhTriangle as "BvhTriangle" in &bvh::BVH, corner, index, edge_1, lets_through, edge_2),
         host!(CameraUniform as "SpecimenCamera" in &specimen::SPECIMEN, right, step, up, distance, back, samples),
         host!(SpecimenUniform as "SpecimenView" in &specimen::SPECIMEN,
@@ -270,7 +270,7 @@ fn every_struct_in_a_buffer_has_a_host() {
 #[test]
 fn a_wrong_layout_is_seen() {
     let (_, members) = layout(&bvh::BVH, "BvhNode");
-    let swapped = [("low", offset_of!(BvhNode, high)), ("high", offset_of!(BvhNode, low))];
+    let swapped = [("low_x", offset_of!(BvhNode, high_x)), ("high_x", offset_of!(BvhNode, low_x))];
     for (name, at) in swapped {
         assert!(members.iter().any(|(n, offset)| n == name && *offset != at), "{name}");
     }

@@ -2,11 +2,11 @@
 //!
 //! The library merges neighboring boxes from the leaves up (D. Meister, J. Bittner, "Parallel locally-ordered clustering for bounding
 //! volume hierarchy construction", 2018) and then moves subtrees to where they cost rays less (the same, "Parallel reinsertion for
-//! bounding volume hierarchy optimization", 2018). Among walls, wires and leaves of trees a ray meets a third of the boxes that it meets
+//! bounding volume hierarchy optimization", 2018). Then nodes take in their largest children until they have four. Among walls, wires and leaves of trees a ray meets a third of the boxes that it meets
 //! in a tree that is split from the root down by the surface area heuristic.
 
 use downpour_math::vector::sub;
-use downpour_shaders::bvh::BVH_STACK;
+use downpour_shaders::bvh::{BVH_LEAF, BVH_LEAF_SHIFT, BVH_NO_CHILD, BVH_STACK};
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
@@ -16,7 +16,7 @@ use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
 use crate::bounds::Bounds;
-use crate::{Bvh, BvhNode, BvhTriangle};
+use crate::{Bvh, BvhNode, BvhTriangle, bvh_bounds, bvh_leaf};
 
 /// Triangle count up to which a node is a leaf.
 pub(crate) const LEAF: usize = 4;
@@ -33,25 +33,22 @@ const REINSERTED_LEAVES: f32 = 0.2;
 const NODE_COST: f32 = 1.0;
 /// Coordinates beyond this are scaled for the library, whose areas must be finite.
 const LARGE: f32 = 1.0e15;
-/// Depth at which a subtree that is too deep for the stack of the walk is divided anew, into halves.
-const HALVED_FROM: usize = 20;
-/// Deepest level: the stack of the walk holds one node for each.
-const DEEPEST: usize = BVH_STACK as usize - 2;
-
-/// A node that holds nothing.
-const EMPTY: BvhNode = BvhNode { low: [0.0; 3], link: 0, high: [0.0; 3], count: 0 };
+/// Level from which on a subtree that is too deep for the stack of the walk is divided anew, into quarters.
+const HALVED_FROM: usize = 8;
+/// Levels of nodes, at most: each leaves three children on the stack of the walk.
+const LEVELS: usize = (BVH_STACK as usize - 1) / 3;
 
 impl Bvh {
     /// Builds the hierarchy over triangles given by their corners. Nothing passes through them:
     /// [`lets_through`](BvhTriangle::lets_through) is 0. A triangle with a corner that is not finite is in the list, and is not met.
     #[must_use]
     pub fn new(corners: &[[[f32; 3]; 3]]) -> Self {
-        let mut layout = Layout { nodes: vec![EMPTY], order: Vec::with_capacity(corners.len()) };
-        if corners.len() <= LEAF {
-            layout.leaf(0, 0..corners.len() as u32);
-        } else {
+        let mut layout = Layout { nodes: vec![BvhNode::EMPTY], order: Vec::with_capacity(corners.len()) };
+        if corners.len() > LEAF {
             let boxes = boxes(corners);
             layout.tree(&cluster(&boxes), &boxes);
+        } else if !corners.is_empty() {
+            layout.nodes[0].child[0] = layout.leaf(0..corners.len() as u32);
         }
         let Layout { mut nodes, order } = layout;
         let triangle = |&index: &u32| {
@@ -62,19 +59,25 @@ impl Bvh {
         let triangles = order.iter().map(triangle).collect();
         // Children stand behind their parent.
         for at in (0..nodes.len()).rev() {
-            let BvhNode { link, count, .. } = nodes[at];
-            let bounds = if count > 0 || nodes.len() == 1 {
-                let of_leaf = order[link as usize..(link + count) as usize].iter();
-                of_leaf.flat_map(|&index| corners[index as usize]).fold(Bounds::NONE, Bounds::with)
-            } else if link > 0 {
-                let child = |k: usize| Bounds { low: nodes[k].low, high: nodes[k].high };
-                child(link as usize).union(child(link as usize + 1))
-            } else {
-                continue;
-            };
-            (nodes[at].low, nodes[at].high) = (bounds.low, bounds.high);
+            for k in 0..4 {
+                let child = nodes[at].child[k];
+                if child < BVH_LEAF {
+                    let [low, high] = bvh_bounds(&nodes[child as usize..]).unwrap_or_default();
+                    nodes[at].set_bounds(k, &Bounds { low, high });
+                } else if child != BVH_NO_CHILD {
+                    let of_leaf = order[bvh_leaf(child)].iter().flat_map(|&index| corners[index as usize]);
+                    nodes[at].set_bounds(k, &of_leaf.fold(Bounds::NONE, Bounds::with));
+                }
+            }
         }
         Self { nodes, triangles }
+    }
+}
+
+impl BvhNode {
+    fn set_bounds(&mut self, k: usize, bounds: &Bounds) {
+        [self.low_x[k], self.low_y[k], self.low_z[k]] = bounds.low;
+        [self.high_x[k], self.high_y[k], self.high_z[k]] = bounds.high;
     }
 }
 
@@ -120,57 +123,119 @@ struct Layout {
 }
 
 impl Layout {
-    /// Makes node `at` a leaf of some triangles.
-    fn leaf(&mut self, at: usize, triangles: impl Iterator<Item = u32>) {
+    /// A leaf of some triangles, as a child.
+    fn leaf(&mut self, triangles: impl Iterator<Item = u32>) -> u32 {
         let first = self.order.len();
         self.order.extend(triangles);
-        self.nodes[at].link = first as u32;
-        self.nodes[at].count = (self.order.len() - first) as u32;
+        ((self.order.len() - first) as u32) << BVH_LEAF_SHIFT | first as u32
     }
 
-    /// Gives node `at` two children, and returns the place of the first.
-    fn children(&mut self, at: usize) -> usize {
-        let child = self.nodes.len().next_multiple_of(2);
-        self.nodes.resize(child + 2, EMPTY);
-        self.nodes[at].link = child as u32;
-        child
+    /// A node, as a child, that has no children yet.
+    fn node(&mut self) -> u32 {
+        self.nodes.push(BvhNode::EMPTY);
+        self.nodes.len() as u32 - 1
     }
 
     /// Lays out a tree of the library, left to right.
     fn tree(&mut self, tree: &Bvh2, boxes: &[Aabb]) {
-        let heights = heights(tree);
-        // Nodes of the tree, their places, and their depths.
-        let mut stack = vec![(0, 0, 0)];
-        while let Some((from, at, depth)) = stack.pop() {
-            let node = &tree.nodes[from];
-            if node.is_leaf() {
-                self.leaf(at, of_leaf(tree, node).iter().copied());
-            } else if depth >= HALVED_FROM && depth + heights[from] > DEEPEST {
-                self.halve(&mut triangles(tree, from), boxes, at);
-            } else {
-                let (first, child) = (node.first_index as usize, self.children(at));
-                stack.extend([(first + 1, child + 1, depth + 1), (first, child, depth + 1)]);
+        let wide = widened(tree);
+        // Nodes of the tree, their places, and their levels.
+        let mut stack = vec![(0, 0, 1)];
+        while let Some((from, at, level)) = stack.pop() {
+            for (k, child) in wide[from].children.iter().enumerate() {
+                let node = &tree.nodes[child.node];
+                self.nodes[at].child[k] = if node.is_leaf() {
+                    self.leaf(of_leaf(tree, node).iter().copied())
+                } else if level >= HALVED_FROM && level + wide[child.wide].levels > LEVELS {
+                    self.halve(&mut triangles(tree, child.node), boxes)
+                } else {
+                    let place = self.node();
+                    stack.push((child.wide, place as usize, level + 1));
+                    place
+                };
             }
         }
     }
 
-    /// Lays out triangles below node `at`, halved along their longest axis until they fit a leaf.
-    fn halve(&mut self, triangles: &mut [u32], boxes: &[Aabb], at: usize) {
+    /// Lays out triangles, halved along their longest axis, and the halves again, until they fit a leaf.
+    fn halve(&mut self, triangles: &mut [u32], boxes: &[Aabb]) -> u32 {
         if triangles.len() <= LEAF {
-            return self.leaf(at, triangles.iter().copied());
+            return self.leaf(triangles.iter().copied());
         }
-        let center = |index: u32| boxes[index as usize].center();
-        let whole = triangles.iter().fold(Bounds::NONE, |whole, &index| whole.with(center(index).to_array()));
-        let extent = |axis: usize| whole.high[axis] - whole.low[axis];
-        let axis =
-            if extent(0) >= extent(1).max(extent(2)) { 0 } else { 1 + usize::from(extent(2) > extent(1)) };
-        // Ties are broken by the index, so that the order does not depend on the sort algorithm.
-        triangles.sort_by(|&a, &b| center(a)[axis].total_cmp(&center(b)[axis]).then(a.cmp(&b)));
-        let child = self.children(at);
-        let (left, right) = triangles.split_at_mut(triangles.len() / 2);
-        self.halve(left, boxes, child);
-        self.halve(right, boxes, child + 1);
+        let place = self.node();
+        let mut k = 0;
+        for half in halves(triangles, boxes) {
+            for quarter in halves(half, boxes) {
+                self.nodes[place as usize].child[k] = self.halve(quarter, boxes);
+                k += 1;
+            }
+        }
+        place
     }
+}
+
+/// Triangles, halved along the longest axis of their centers.
+fn halves<'a>(triangles: &'a mut [u32], boxes: &[Aabb]) -> [&'a mut [u32]; 2] {
+    let center = |index: u32| boxes[index as usize].center();
+    let whole = triangles.iter().fold(Bounds::NONE, |whole, &index| whole.with(center(index).to_array()));
+    let extent = |axis: usize| whole.high[axis] - whole.low[axis];
+    let axis = if extent(0) >= extent(1).max(extent(2)) { 0 } else { 1 + usize::from(extent(2) > extent(1)) };
+    // Ties are broken by the index, so that the order does not depend on the sort algorithm.
+    triangles.sort_by(|&a, &b| center(a)[axis].total_cmp(&center(b)[axis]).then(a.cmp(&b)));
+    let (left, right) = triangles.split_at_mut(triangles.len() / 2);
+    [left, right]
+}
+
+/// A node of up to four children.
+struct Wide {
+    children: Vec<WideChild>,
+    /// Levels of nodes from this one on.
+    levels: usize,
+}
+
+/// A child of such a node.
+struct WideChild {
+    /// Its node of the library's tree.
+    node: usize,
+    /// Its node of four children, if it is not a leaf.
+    wide: usize,
+}
+
+/// The nodes of a tree of the library that stay when each takes in its children, the largest first, until it has four: the root first,
+/// each before its children.
+fn widened(tree: &Bvh2) -> Vec<Wide> {
+    let mut wide = vec![widest(tree, 0)];
+    let mut next = 0;
+    while next < wide.len() {
+        for k in 0..wide[next].children.len() {
+            let node = wide[next].children[k].node;
+            if !tree.nodes[node].is_leaf() {
+                wide[next].children[k].wide = wide.len();
+                wide.push(widest(tree, node));
+            }
+        }
+        next += 1;
+    }
+    for at in (0..wide.len()).rev() {
+        let inner = wide[at].children.iter().filter(|child| child.wide > 0);
+        wide[at].levels = 1 + inner.map(|child| wide[child.wide].levels).max().unwrap_or(0);
+    }
+    wide
+}
+
+/// The children that a node of the library's tree gets.
+fn widest(tree: &Bvh2, at: usize) -> Wide {
+    let mut children = vec![at];
+    while children.len() < 4 {
+        // Half the area of boxes is the chance of a ray to meet them.
+        let area = |&k: &usize| tree.nodes[children[k]].aabb().half_area();
+        let inner = (0..children.len()).filter(|&k| !tree.nodes[children[k]].is_leaf());
+        let Some(largest) = inner.reduce(|a, b| if area(&b) > area(&a) { b } else { a }) else { break };
+        let first = tree.nodes[children[largest]].first_index as usize;
+        children.splice(largest..=largest, [first, first + 1]);
+    }
+    let children = children.into_iter().map(|node| WideChild { node, wide: 0 }).collect();
+    Wide { children, levels: 0 }
 }
 
 /// Triangles of a leaf of a tree.
@@ -192,26 +257,4 @@ fn triangles(tree: &Bvh2, node: usize) -> Vec<u32> {
         }
     }
     all
-}
-
-/// Levels below each node of a tree.
-fn heights(tree: &Bvh2) -> Vec<usize> {
-    let mut order = vec![0];
-    let mut next = 0;
-    while let Some(&at) = order.get(next) {
-        let node = &tree.nodes[at];
-        if !node.is_leaf() {
-            order.extend([node.first_index as usize, node.first_index as usize + 1]);
-        }
-        next += 1;
-    }
-    let mut heights = vec![0; tree.nodes.len()];
-    for &at in order.iter().rev() {
-        let node = &tree.nodes[at];
-        if !node.is_leaf() {
-            let first = node.first_index as usize;
-            heights[at] = 1 + heights[first].max(heights[first + 1]);
-        }
-    }
-    heights
 }

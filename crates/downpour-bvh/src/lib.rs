@@ -1,35 +1,43 @@
 //! A bounding volume hierarchy over triangles, and the nearest hit of a ray.
 //!
 //! [`Bvh::new`] builds it from the triangles' corners; [`bvh_hit`] finds what a ray meets first, [`bvh_blocker`] whether it meets
-//! anything, as shadows ask. The two children of a node are neighbors in memory, so that a ray meets both with one access; leaves
-//! refer to a reordered list of triangles. The build depends on the triangles only: the same mesh gives the same tree.
+//! anything, as shadows ask. A node has the boxes of up to four children, which a ray is tested against at once; leaves refer to a
+//! reordered list of triangles. The build depends on the triangles only: the same mesh gives the same tree.
 //!
 //! Twin of the walk in `shaders/wgsl/bvh/bvh.wgsl`.
 
 mod bounds;
 mod build;
 
+use std::ops::Range;
+
 use bounds::Bounds;
 use downpour_math::vector::{cross, dot, sub};
-use downpour_shaders::bvh::{BVH_FAR, BVH_STACK};
-use glam::Vec3A;
+use downpour_shaders::bvh::{BVH_FAR, BVH_LEAF, BVH_LEAF_SHIFT, BVH_NO_CHILD, BVH_STACK};
+use glam::{BVec4, Vec4};
 
 /// Barycentric slack: a ray through a shared edge must not slip between the two triangles.
 const EDGE_SLACK: f32 = downpour_shaders::bvh::BVH_EDGE_SLACK;
 
-/// A node. An inner node has its children at `link`, which is even, and right after it; a leaf has `count` triangles
-/// from index `link` on. The same layout as `BvhNode` in WGSL.
+/// A node: the boxes of its children. The same layout as `BvhNode` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct BvhNode {
-    /// Lower corner of the bounding box.
-    pub low: [f32; 3],
-    /// Index of the first child, or of the first triangle.
-    pub link: u32,
-    /// Upper corner of the bounding box.
-    pub high: [f32; 3],
-    /// Number of triangles; 0 for an inner node.
-    pub count: u32,
+    /// Lower corners of the children's bounding boxes.
+    pub low_x: [f32; 4],
+    /// See [`BvhNode::low_x`].
+    pub low_y: [f32; 4],
+    /// See [`BvhNode::low_x`].
+    pub low_z: [f32; 4],
+    /// Upper corners of the children's bounding boxes.
+    pub high_x: [f32; 4],
+    /// See [`BvhNode::high_x`].
+    pub high_y: [f32; 4],
+    /// See [`BvhNode::high_x`].
+    pub high_z: [f32; 4],
+    /// Children: the index of a node, below `BVH_LEAF`; or the index of a leaf's first triangle, with the number of its triangles in the
+    /// bits from `BVH_LEAF_SHIFT` on; or `BVH_NO_CHILD`.
+    pub child: [u32; 4],
 }
 
 /// Corner and edges of a triangle, as the intersection test needs them. The same layout as `BvhTriangle` in WGSL.
@@ -75,7 +83,7 @@ pub struct Hit {
 /// Bounding volume hierarchy over triangles.
 #[derive(Clone, Debug)]
 pub struct Bvh {
-    /// Nodes, the root first; node 1 is empty, so that pairs of children begin at multiples of 64 bytes.
+    /// Nodes, the root first, each before its children.
     pub nodes: Vec<BvhNode>,
     /// Triangles in the order of the leaves.
     pub triangles: Vec<BvhTriangle>,
@@ -128,34 +136,28 @@ fn bvh_walk<const ANY: bool>(
     let inverse = bvh_inverse(direction);
     let mut best: Option<Hit> = None;
     let mut limit = farthest;
-    // Nodes to be visited, and where the ray enters them.
+    // Children to be visited, and where the ray enters them.
     let mut stack = [(0u32, 0.0f32); BVH_STACK as usize];
     let mut depth = 0;
-    let mut node = &nodes[0];
-    if bvh_enter(node, origin, inverse, nearest, limit) >= BVH_FAR {
-        return None;
-    }
+    let mut child = 0;
     loop {
-        if node.count == 0 {
-            // The nearer child first: its triangles may hide the other.
-            let (left, right) = (node.link, node.link + 1);
-            let to_left = bvh_enter(&nodes[left as usize], origin, inverse, nearest, limit);
-            let to_right = bvh_enter(&nodes[right as usize], origin, inverse, nearest, limit);
-            let (near, far, to_near, to_far) = if to_right < to_left {
-                (right, left, to_right, to_left)
-            } else {
-                (left, right, to_left, to_right)
-            };
-            if to_near < BVH_FAR {
-                if to_far < BVH_FAR {
-                    stack[depth] = (far, to_far);
+        if child < BVH_LEAF {
+            let node = &nodes[child as usize];
+            let enters = bvh_enter(node, origin, inverse, nearest, limit);
+            // The nearest child first: its triangles may hide the others.
+            let order = bvh_order(enters, node.child);
+            for k in (1..4).rev() {
+                if order.enters[k] < BVH_FAR {
+                    stack[depth] = (order.child[k], order.enters[k]);
                     depth += 1;
                 }
-                node = &nodes[near as usize];
+            }
+            if order.enters[0] < BVH_FAR {
+                child = order.child[0];
                 continue;
             }
         } else {
-            for triangle in &triangles[node.link as usize..(node.link + node.count) as usize] {
+            for triangle in &triangles[bvh_leaf(child)] {
                 let [distance, u, v] = bvh_triangle(triangle, origin, direction);
                 if distance > nearest && distance < limit {
                     limit = distance;
@@ -166,7 +168,7 @@ fn bvh_walk<const ANY: bool>(
                 }
             }
         }
-        // The next stacked node that is nearer than the current hit.
+        // The next stacked child that is nearer than the current hit.
         loop {
             if depth == 0 {
                 return best;
@@ -174,9 +176,70 @@ fn bvh_walk<const ANY: bool>(
             depth -= 1;
             let (far, enter) = stack[depth];
             if bvh_is_before(enter, limit) {
-                node = &nodes[far as usize];
+                child = far;
                 break;
             }
+        }
+    }
+}
+
+/// The triangles of a child that is a leaf.
+#[inline(always)]
+#[must_use]
+pub fn bvh_leaf(child: u32) -> Range<usize> {
+    let first = (child % BVH_LEAF) as usize;
+    first..first + (child >> BVH_LEAF_SHIFT) as usize
+}
+
+/// Children of a node in the order in which a ray enters them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BvhOrder {
+    /// Distances at which the ray enters them, the nearest first.
+    pub enters: [f32; 4],
+    /// The children.
+    pub child: [u32; 4],
+}
+
+/// Orders children of a node by the distances at which a ray enters them.
+#[inline(always)]
+#[must_use]
+pub fn bvh_order(enters: [f32; 4], child: [u32; 4]) -> BvhOrder {
+    let mut order = BvhOrder { enters, child };
+    // A network of five comparisons.
+    for [a, b] in [[0, 1], [2, 3], [0, 2], [1, 3], [1, 2]] {
+        if order.enters[a] > order.enters[b] {
+            order.enters.swap(a, b);
+            order.child.swap(a, b);
+        }
+    }
+    order
+}
+
+/// Corners, the lower first, of the box around all triangles; `None` without any.
+#[must_use]
+pub fn bvh_bounds(nodes: &[BvhNode]) -> Option<[[f32; 3]; 2]> {
+    let root = nodes.first()?;
+    let all = (0..4).filter(|&k| root.child[k] != BVH_NO_CHILD).map(|k| root.bounds(k));
+    all.reduce(Bounds::union).map(|all| [all.low, all.high])
+}
+
+impl BvhNode {
+    /// A node without children.
+    const EMPTY: Self = Self {
+        low_x: [0.0; 4],
+        low_y: [0.0; 4],
+        low_z: [0.0; 4],
+        high_x: [0.0; 4],
+        high_y: [0.0; 4],
+        high_z: [0.0; 4],
+        child: [BVH_NO_CHILD; 4],
+    };
+
+    /// The box of a child.
+    fn bounds(&self, k: usize) -> Bounds {
+        Bounds {
+            low: [self.low_x[k], self.low_y[k], self.low_z[k]],
+            high: [self.high_x[k], self.high_y[k], self.high_z[k]],
         }
     }
 }
@@ -194,28 +257,29 @@ pub fn bvh_bounds_within(
     let whole = Bounds { low, high };
     let mut found = Bounds::NONE;
     let mut stack = vec![0];
-    while let Some(index) = stack.pop() {
-        let Some(node) = nodes.get(index) else { continue };
-        let bounds = Bounds { low: node.low, high: node.high };
-        let Some(common) = bounds.common(&whole) else { continue };
-        if found.common(&common) == Some(common) {
-            continue;
-        }
-        if node.count == 0 && wanted.is_none() && common == bounds {
-            found = found.union(bounds);
-            continue;
-        }
-        if node.count == 0 {
-            stack.extend([node.link as usize, node.link as usize + 1]);
-            continue;
-        }
-        for triangle in &triangles[node.link as usize..(node.link + node.count) as usize] {
-            let [a, b, c] = triangle.corners();
-            let bounds = Bounds::NONE.with(a).with(b).with(c);
-            if let Some(common) = bounds.common(&whole)
-                && wanted.is_none_or(|wanted| wanted(triangle))
-            {
-                found = found.union(common);
+    while let Some(node) = stack.pop().and_then(|index: u32| nodes.get(index as usize)) {
+        for (k, &child) in node.child.iter().enumerate().filter(|child| *child.1 != BVH_NO_CHILD) {
+            let bounds = node.bounds(k);
+            let Some(common) = bounds.common(&whole) else { continue };
+            if found.common(&common) == Some(common) {
+                continue;
+            }
+            if child < BVH_LEAF && wanted.is_none() && common == bounds {
+                found = found.union(bounds);
+                continue;
+            }
+            if child < BVH_LEAF {
+                stack.push(child);
+                continue;
+            }
+            for triangle in &triangles[bvh_leaf(child)] {
+                let [a, b, c] = triangle.corners();
+                let bounds = Bounds::NONE.with(a).with(b).with(c);
+                if let Some(common) = bounds.common(&whole)
+                    && wanted.is_none_or(|wanted| wanted(triangle))
+                {
+                    found = found.union(common);
+                }
             }
         }
     }
@@ -228,21 +292,25 @@ pub fn bvh_inverse(direction: [f32; 3]) -> [f32; 3] {
     direction.map(|d| 1.0 / if d.abs() > 1.0e-20 { d } else { 1.0e-20 })
 }
 
-/// Distance, `nearest` at least, at which the ray is in the box of `node`, if it is below `limit`; `BVH_FAR` otherwise.
+/// Distances, `nearest` at least, at which the ray is in the boxes of the children of `node`, where they are below `limit`; `BVH_FAR`
+/// for other children.
 #[inline(always)]
 #[must_use]
-pub fn bvh_enter(node: &BvhNode, origin: [f32; 3], inverse: [f32; 3], nearest: f32, limit: f32) -> f32 {
+pub fn bvh_enter(node: &BvhNode, origin: [f32; 3], inverse: [f32; 3], nearest: f32, limit: f32) -> [f32; 4] {
     // SIMD vectors: this test dominates the time of a picture.
-    let (origin, inverse) = (Vec3A::from(origin), Vec3A::from(inverse));
-    let a = (Vec3A::from(node.low) - origin) * inverse;
-    let b = (Vec3A::from(node.high) - origin) * inverse;
-    // No number here is NaN, so plain comparisons are enough.
-    let greater = |a: f32, b: f32| if a > b { a } else { b };
-    let less = |a: f32, b: f32| if a < b { a } else { b };
-    let (near, far) = (a.min(b), a.max(b));
-    let enter = greater(greater(near.x, near.y), greater(near.z, nearest));
-    let leave = less(less(far.x, far.y), less(far.z, limit));
-    if bvh_is_before(enter, leave) { enter } else { BVH_FAR }
+    let along = |axis: usize, low: [f32; 4], high: [f32; 4]| {
+        let a = (Vec4::from(low) - origin[axis]) * inverse[axis];
+        let b = (Vec4::from(high) - origin[axis]) * inverse[axis];
+        (a.min(b), a.max(b))
+    };
+    let (near_x, far_x) = along(0, node.low_x, node.high_x);
+    let (near_y, far_y) = along(1, node.low_y, node.high_y);
+    let (near_z, far_z) = along(2, node.low_z, node.high_z);
+    let enter = near_x.max(near_y).max(near_z.max(Vec4::splat(nearest)));
+    let leave = far_x.min(far_y).min(far_z.min(Vec4::splat(limit)));
+    let is_child = BVec4::from_array(node.child.map(|child| child != BVH_NO_CHILD));
+    let met = enter.cmple(leave * 1.000_001 + 1.0e-7);
+    std::array::from_fn(|k| if met.test(k) && is_child.test(k) { enter[k] } else { BVH_FAR })
 }
 
 /// True if a ray enters a box before a distance: rounding may swap the two by a few units in the last place.
@@ -289,6 +357,12 @@ mod tests {
                 })
             })
             .collect()
+    }
+
+    /// All children of all nodes, and their boxes.
+    fn children(bvh: &Bvh) -> impl Iterator<Item = (Bounds, u32)> {
+        let of = |node: &BvhNode| (0..4).map(|k| (node.bounds(k), node.child[k])).collect::<Vec<_>>();
+        bvh.nodes.iter().flat_map(of).filter(|(_, child)| *child != BVH_NO_CHILD)
     }
 
     /// Rays through a box: in all directions, some along an axis, for which the walk divides by zero.
@@ -363,16 +437,14 @@ mod tests {
         );
     }
 
-    /// Depth of a tree.
-    fn depth(bvh: &Bvh) -> usize {
+    /// Levels of nodes of a tree.
+    fn levels(bvh: &Bvh) -> usize {
         let mut deepest = 0;
-        let mut stack = vec![(0, 0)];
-        while let Some((at, depth)) = stack.pop() {
-            let node = &bvh.nodes[at as usize];
-            deepest = deepest.max(depth);
-            if node.count == 0 && node.link > 0 {
-                stack.extend([(node.link, depth + 1), (node.link + 1, depth + 1)]);
-            }
+        let mut stack = vec![(0, 1)];
+        while let Some((at, level)) = stack.pop() {
+            deepest = deepest.max(level);
+            let inner = bvh.nodes[at as usize].child.into_iter().filter(|&child| child < BVH_LEAF);
+            stack.extend(inner.map(|child| (child, level + 1)));
         }
         deepest
     }
@@ -384,7 +456,9 @@ mod tests {
         let triangle = |size: f32| [[-size, 0.0, -size], [size, 0.1 * size, -size], [0.0, -0.1 * size, size]];
         let corners: Vec<[[f32; 3]; 3]> = sizes.map(triangle).collect();
         let bvh = Bvh::new(&corners);
-        assert!(depth(&bvh) + 2 <= BVH_STACK as usize, "{} levels", depth(&bvh));
+        // Each level leaves three children on the stack, and a walk may begin with the root on it.
+        assert!(3 * levels(&bvh) < BVH_STACK as usize, "{} levels", levels(&bvh));
+        assert!(levels(&bvh) > 10, "{} levels are no chain", levels(&bvh));
         for ray in rays(300, -100.0, 100.0) {
             let expected = brute_force(&bvh, ray, 1.0e-4).first().map(|hit| hit.0);
             let found = bvh.hit(ray.0, ray.1, 1.0e-4);
@@ -422,33 +496,38 @@ mod tests {
         let corners = soup(1000);
         let bvh = Bvh::new(&corners);
         let mut seen = vec![0; corners.len()];
-        for node in bvh.nodes.iter().filter(|n| n.count > 0) {
-            for t in &bvh.triangles[node.link as usize..(node.link + node.count) as usize] {
+        for (bounds, child) in children(&bvh).filter(|(_, child)| *child >= BVH_LEAF) {
+            for t in &bvh.triangles[bvh_leaf(child)] {
                 seen[t.index as usize] += 1;
                 for p in corners[t.index as usize] {
-                    assert!((0..3).all(|k| node.low[k] <= p[k] && p[k] <= node.high[k]));
+                    assert!((0..3).all(|k| bounds.low[k] <= p[k] && p[k] <= bounds.high[k]));
                 }
             }
         }
         assert!(seen.iter().all(|&n| n == 1));
     }
 
-    /// Children are pairs, each in the box of its parent, and all nodes but the root and node 1 are a child once.
+    /// All nodes but the root are a child once, of a node before them, whose box is that of their children.
     #[test]
-    fn children_are_neighbors() {
+    fn nodes_are_in_the_boxes_of_their_parents() {
         let bvh = Bvh::new(&soup(1000));
         let mut parents = vec![0; bvh.nodes.len()];
-        for node in [&bvh.nodes[0]].into_iter().chain(&bvh.nodes[2..]).filter(|node| node.count == 0) {
-            assert_eq!(node.link % 2, 0);
-            let pair = node.link as usize..node.link as usize + 2;
-            for (parents, child) in parents[pair.clone()].iter_mut().zip(&bvh.nodes[pair]) {
-                *parents += 1;
-                assert!((0..3).all(|k| node.low[k] <= child.low[k] && child.high[k] <= node.high[k]));
+        for (at, node) in bvh.nodes.iter().enumerate() {
+            for (k, &child) in node.child.iter().enumerate().filter(|child| *child.1 < BVH_LEAF) {
+                assert!(child as usize > at);
+                parents[child as usize] += 1;
+                let [low, high] = bvh_bounds(&bvh.nodes[child as usize..]).unwrap();
+                assert!(node.bounds(k) == Bounds { low, high });
             }
         }
-        assert_eq!(parents[..2], [0, 0]);
-        assert!(parents[2..].iter().all(|&n| n == 1));
+        assert_eq!(parents[0], 0);
+        assert!(parents[1..].iter().all(|&n| n == 1));
+        let filled = children(&bvh).count() as f64 / (4 * bvh.nodes.len()) as f64;
+        assert!(filled > 0.7, "{filled} of all places for children are filled");
         assert_eq!(Bvh::new(&soup(3)).nodes.len(), 1);
+        let all = soup(1000).into_iter().flatten().fold(Bounds::NONE, Bounds::with);
+        assert_eq!(bvh_bounds(&bvh.nodes), Some([all.low, all.high]));
+        assert_eq!(bvh_bounds(&Bvh::new(&[]).nodes), None);
     }
 
     /// The bounds of what lies in a box hold the parts of all triangles in it, and are not larger than those of their own bounds.
@@ -496,8 +575,9 @@ mod tests {
             triangle[1] = [20.0, -1.0, 0.02 * i as f32];
         }
         let bvh = Bvh::new(&corners);
-        let largest = bvh.nodes.iter().map(|n| n.count).max();
-        assert!(largest <= Some(LEAF as u32), "a leaf of {largest:?} triangles");
+        let leaves = children(&bvh).filter(|(_, child)| *child >= BVH_LEAF);
+        let largest = leaves.map(|(_, child)| bvh_leaf(child).len()).max();
+        assert!(largest <= Some(LEAF), "a leaf of {largest:?} triangles");
     }
 
     #[test]

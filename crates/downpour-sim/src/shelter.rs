@@ -12,7 +12,7 @@
 //! Surfaces may have holes, as the cards with painted leaves ([`Holes`]): rain falls through them. All other surfaces
 //! stop drops, even transparent ones: a pane of glass is a roof.
 
-use downpour_bvh::{BvhNode, BvhTriangle, Hit, bvh_blocker, bvh_hit};
+use downpour_bvh::{BvhNode, BvhTriangle, Hit, bvh_blocker, bvh_bounds, bvh_hit};
 use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_shaders::sim::field::{SHELTER_CARRIED, SHELTER_CLEAR, SHELTER_CUT, SHELTER_HOLES};
 use downpour_wind::UniformWind;
@@ -55,8 +55,7 @@ impl Obstacles<'_> {
     /// Corners of the box around all of them, m, relative to their origin; `None` without obstacles.
     #[must_use]
     pub fn corners(&self) -> Option<[Vec3; 2]> {
-        let root = self.nodes.first().filter(|_| !self.triangles.is_empty())?;
-        Some([root.low.into(), root.high.into()])
+        bvh_bounds(self.nodes).map(|corners| corners.map(Vec3::from))
     }
 }
 

@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use downpour_bvh::{BvhNode, BvhTriangle};
+use downpour_bvh::{BvhNode, BvhTriangle, bvh_bounds};
 use downpour_math::rng::rng_draw;
 use downpour_render::RenderError;
 use downpour_render::camera::{Camera, Viewpoint};
@@ -157,7 +157,7 @@ impl SceneData {
     /// Lower and upper corner of the bounding box, meters.
     #[must_use]
     pub fn bounds(&self) -> (Vec3, Vec3) {
-        self.nodes.first().map_or((Vec3::ZERO, Vec3::ZERO), |root| (root.low.into(), root.high.into()))
+        bvh_bounds(&self.nodes).map_or((Vec3::ZERO, Vec3::ZERO), |[low, high]| (low.into(), high.into()))
     }
 
     /// Reads light `index`.

@@ -5,6 +5,7 @@ mod obstacles;
 mod settings;
 mod textures;
 
+use downpour_bvh::bvh_bounds;
 use downpour_drop::air::Air;
 use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution};
 use downpour_drop::oscillation::{Amplitudes, Fluids};
@@ -272,12 +273,12 @@ impl Rain {
         let frame = frame.with_ray_spacing(self.settings.ray_spacing);
         let lighting_on_gpu = self.scene_on_gpu.lighting_of(&self.pool, &frame, &self.scene)?;
         let [_, nodes, triangles, corners, table, texels] = &lighting_on_gpu.buffers;
-        let bounds = self.scene.nodes.first().filter(|_| self.has_obstacles);
+        let bounds = bvh_bounds(&self.scene.nodes).filter(|_| self.has_obstacles);
         let obstacles = ObstaclesOnGpu {
             nodes,
             triangles,
             holes: self.has_holes.then_some(HolesOnGpu { corners, table, texels }),
-            bounds: bounds.map(|root| [Vec3::from(root.low), Vec3::from(root.high)]),
+            bounds: bounds.map(|corners| corners.map(Vec3::from)),
             origin: DVec3::ZERO,
         };
         let (splashes, bounce) = self.of_impacts(&seen, view.time_s)?;

@@ -1,13 +1,17 @@
 // The nearest hit of a ray among the triangles of a bounding volume hierarchy.
 // Twin: downpour_bvh.
 
+// The boxes of up to four children.
 struct BvhNode {
-    low: vec3f,
-    // Index of the first child of an inner node (the second is right after it), or of the first triangle of a leaf.
-    link: u32,
-    high: vec3f,
-    // Number of triangles of a leaf; 0 for an inner node.
-    count: u32,
+    low_x: vec4f,
+    low_y: vec4f,
+    low_z: vec4f,
+    high_x: vec4f,
+    high_y: vec4f,
+    high_z: vec4f,
+    // Index of a node, below BVH_LEAF; or index of a leaf's first triangle, and from BVH_LEAF_SHIFT on the number of its triangles; or
+    // BVH_NO_CHILD.
+    child: vec4u,
 }
 
 struct BvhTriangle {
@@ -31,15 +35,41 @@ struct BvhHit {
 @group(0) @binding(1) var<storage, read> bvh_nodes: array<BvhNode>;
 @group(0) @binding(2) var<storage, read> bvh_triangles: array<BvhTriangle>;
 
-// Distance, `nearest` at least, at which the ray is in the box of a node, if it is below `limit`; BVH_FAR otherwise.
-fn bvh_enter(node: BvhNode, origin: vec3f, inverse: vec3f, nearest: f32, limit: f32) -> f32 {
-    let a = (node.low - origin) * inverse;
-    let b = (node.high - origin) * inverse;
-    let near = min(a, b);
-    let far = max(a, b);
-    let enter = max(max(near.x, near.y), max(near.z, nearest));
-    let leave = min(min(far.x, far.y), min(far.z, limit));
-    return select(BVH_FAR, enter, bvh_is_before(enter, leave));
+// Children of a node in the order in which a ray enters them, and the distances at which it does.
+struct BvhOrder {
+    enters: vec4f,
+    child: vec4u,
+}
+
+// Distances, `nearest` at least, at which the ray is in the boxes of the children of a node, where they are below `limit`; BVH_FAR for
+// other children.
+fn bvh_enter(node: BvhNode, origin: vec3f, inverse: vec3f, nearest: f32, limit: f32) -> vec4f {
+    let low_x = (node.low_x - origin.x) * inverse.x;
+    let high_x = (node.high_x - origin.x) * inverse.x;
+    let low_y = (node.low_y - origin.y) * inverse.y;
+    let high_y = (node.high_y - origin.y) * inverse.y;
+    let low_z = (node.low_z - origin.z) * inverse.z;
+    let high_z = (node.high_z - origin.z) * inverse.z;
+    let near = max(max(min(low_x, high_x), min(low_y, high_y)), max(min(low_z, high_z), vec4f(nearest)));
+    let far = min(min(max(low_x, high_x), max(low_y, high_y)), min(max(low_z, high_z), vec4f(limit)));
+    // As bvh_is_before.
+    let met = near <= far * 1.000001 + 1.0e-7;
+    return select(vec4f(BVH_FAR), near, met & (node.child != vec4u(BVH_NO_CHILD)));
+}
+
+// Orders children of a node by the distances at which a ray enters them.
+fn bvh_order(enters: vec4f, child: vec4u) -> BvhOrder {
+    // A network of five comparisons: of two pairs, of their nearer and of their farther ones, and of those in the middle.
+    let first = enters.xz > enters.yw;
+    let a = vec4f(select(enters.xz, enters.yw, first), select(enters.yw, enters.xz, first));
+    let b = vec4u(select(child.xz, child.yw, first), select(child.yw, child.xz, first));
+    let second = a.xz > a.yw;
+    let c = vec4f(select(a.xz, a.yw, second), select(a.yw, a.xz, second));
+    let d = vec4u(select(b.xz, b.yw, second), select(b.yw, b.xz, second));
+    let last = c.y > c.z;
+    let e = select(c.yz, c.zy, last);
+    let f = select(d.yz, d.zy, last);
+    return BvhOrder(vec4f(c.x, e, c.w), vec4u(d.x, f, d.w));
 }
 
 // True if a ray enters a box before a distance: rounding may swap the two by a few units in the last place.
@@ -73,7 +103,13 @@ fn bvh_inverse(direction: vec3f) -> vec3f {
     return vec3f(1.0) / steep;
 }
 
-// Nodes that are still to be visited, and where the ray enters them. Of the invocation: a variable of the function would be filled with
+// The triangles of a child that is a leaf: the index of the first, and the index after the last.
+fn bvh_leaf(child: u32) -> vec2u {
+    let first = child % BVH_LEAF;
+    return vec2u(first, first + (child >> BVH_LEAF_SHIFT));
+}
+
+// Children that are still to be visited, and where the ray enters them. Of the invocation: a variable of the function would be filled with
 // zeros for each ray.
 var<private> bvh_stack: array<u32, BVH_STACK>;
 var<private> bvh_enters: array<f32, BVH_STACK>;
@@ -95,33 +131,36 @@ fn bvh_walk(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32, any: b
     var best = BvhHit(-1.0, 0u, 0.0, 0.0);
     var limit = farthest;
     var depth = 0u;
-    var link = bvh_nodes[0].link;
-    var count = bvh_nodes[0].count;
-    if bvh_enter(bvh_nodes[0], origin, inverse, nearest, limit) >= BVH_FAR {
-        return best;
-    }
+    var child = 0u;
     // Each node is visited once at most, so this ends.
     loop {
-        if count == 0u {
-            // The nearer child first: its triangles may hide the other.
-            let left = bvh_nodes[link];
-            let right = bvh_nodes[link + 1u];
-            let to_left = bvh_enter(left, origin, inverse, nearest, limit);
-            let to_right = bvh_enter(right, origin, inverse, nearest, limit);
-            let swap = to_right < to_left;
-            if min(to_left, to_right) < BVH_FAR {
-                if max(to_left, to_right) < BVH_FAR {
-                    bvh_stack[depth] = link + select(1u, 0u, swap);
-                    bvh_enters[depth] = max(to_left, to_right);
-                    depth += 1u;
-                }
-                link = select(left.link, right.link, swap);
-                count = select(left.count, right.count, swap);
+        if child < BVH_LEAF {
+            let node = bvh_nodes[child];
+            // The nearest child first: its triangles may hide the others.
+            let order = bvh_order(bvh_enter(node, origin, inverse, nearest, limit), node.child);
+            if order.enters.w < BVH_FAR {
+                bvh_stack[depth] = order.child.w;
+                bvh_enters[depth] = order.enters.w;
+                depth += 1u;
+            }
+            if order.enters.z < BVH_FAR {
+                bvh_stack[depth] = order.child.z;
+                bvh_enters[depth] = order.enters.z;
+                depth += 1u;
+            }
+            if order.enters.y < BVH_FAR {
+                bvh_stack[depth] = order.child.y;
+                bvh_enters[depth] = order.enters.y;
+                depth += 1u;
+            }
+            if order.enters.x < BVH_FAR {
+                child = order.child.x;
                 continue;
             }
         } else {
-            for (var k = 0u; k < count; k += 1u) {
-                let triangle = bvh_triangles[link + k];
+            let of_leaf = bvh_leaf(child);
+            for (var k = of_leaf.x; k < of_leaf.y; k += 1u) {
+                let triangle = bvh_triangles[k];
                 let hit = bvh_triangle(triangle, origin, direction);
                 if hit.x > nearest && hit.x < limit {
                     limit = hit.x;
@@ -134,7 +173,7 @@ fn bvh_walk(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32, any: b
                 }
             }
         }
-        // The next stacked node that is nearer than the current hit.
+        // The next stacked child that is nearer than the current hit.
         var found = false;
         while depth > 0u && !found {
             depth -= 1u;
@@ -143,8 +182,7 @@ fn bvh_walk(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32, any: b
         if !found {
             break;
         }
-        link = bvh_nodes[bvh_stack[depth]].link;
-        count = bvh_nodes[bvh_stack[depth]].count;
+        child = bvh_stack[depth];
     }
     return best;
 }

@@ -224,6 +224,10 @@ fn scene_direct(
     }
     let few = draws > 0u && draws < count;
     let glossy = is_first && render_frame.sky_rays > 0u && surface.roughness < SCENE_SEEN_BODY;
+    // One of few is drawn while they are added up: what is left of a number that has decided is as good as a new one.
+    let one = few && draws == 1u;
+    var rest = numbers.w;
+    var drawn = 0u;
     var total = 0.0;
     var run = 0.0;
     var next = 0.0;
@@ -232,68 +236,98 @@ fn scene_direct(
     if WET_SURFACES && surface.film > 0.0 {
         out = wet_out(surface, max(dot(surface.normal, view), BRDF_GRAZING));
     }
-    // First what all give together, then the rays.
-    for (var k = 0u; k < 2u * count; k += 1u) {
-        let index = k % count;
-        var lamp = place;
-        if index < render_frame.light_count {
-            lamp = light_load(index);
-        }
-        // Areas have a distance of their own within which their light does not grow.
-        let is_area = lamp.kind == SCENE_LIGHT_AREA;
-        var arrival = scene_arrival(lamp, surface, select(standoff, 0.0, is_area), under);
-        // The ray ends before the surface that shines.
-        arrival.distance -= select(0.0, 4.0 * render_frame.nearest, is_area);
-        var soft = 0.0;
-        if is_first {
-            soft = select(scene_softness(arrival.distance, arrival.spread, footprint), 1.0, is_area);
-        }
-        // The part that is told apart, with the facet's normal in place of the relief's.
-        var glow = vec3f(0.0);
-        var relief = vec3f(0.0);
-        var bare = surface;
-        if soft > 0.0 {
-            relief = scene_glow(surface, view, arrival, out) * soft;
-            glow = relief;
-            if !is_area {
-                var level = surface;
-                level.normal = surface.facet;
-                glow = scene_glow(level, view, arrival, out) * soft;
-            }
-            bare.diffuse *= 1.0 - soft;
-        }
+    // First what all give together, then which lamps are asked, one after another. An invocation goes on to the next lamp that it asks before
+    // it traces a ray: all those of a workgroup trace at once, whichever lamps they ask.
+    var k = 0u;
+    loop {
+        var arrival = SceneArrival();
         var lit = vec3f(0.0);
-        if !(is_first && is_area) {
-            lit = scene_lamp(bare, view, arrival, out, glossy && lamp.kind == SCENE_LIGHT_BODY);
-        }
-        let fraction = light_weight(lit) + light_weight(glow);
-        if k < count {
-            total += fraction;
-            continue;
-        }
-        if k == count {
-            // Positions at equal steps along what all give together: the lamps that they fall on are drawn.
-            step = total / f32(max(draws, 1u));
-            next = numbers.w * step;
-        }
-        run += fraction;
+        var glow = vec3f(0.0);
+        var soft = 0.0;
+        var fraction = 0.0;
         var weight = 1.0;
-        if few {
-            if next >= run {
+        var index = 0u;
+        var is_asked = false;
+        while k < 2u * count && !is_asked {
+            index = k % count;
+            var lamp = place;
+            if index < render_frame.light_count {
+                lamp = light_load(index);
+            }
+            // Areas have a distance of their own within which their light does not grow.
+            let is_area = lamp.kind == SCENE_LIGHT_AREA;
+            arrival = scene_arrival(lamp, surface, select(standoff, 0.0, is_area), under);
+            // The ray ends before the surface that shines.
+            arrival.distance -= select(0.0, 4.0 * render_frame.nearest, is_area);
+            soft = 0.0;
+            // The part that is told apart, with the facet's normal in place of the relief's.
+            glow = vec3f(0.0);
+            var relief = vec3f(0.0);
+            lit = vec3f(0.0);
+            if light_weight(arrival.irradiance) > 0.0 {
+                if is_first {
+                    soft = select(scene_softness(arrival.distance, arrival.spread, footprint), 1.0, is_area);
+                }
+                var bare = surface;
+                if soft > 0.0 {
+                    relief = scene_glow(surface, view, arrival, out) * soft;
+                    glow = relief;
+                    if !is_area {
+                        var level = surface;
+                        level.normal = surface.facet;
+                        glow = scene_glow(level, view, arrival, out) * soft;
+                    }
+                    bare.diffuse *= 1.0 - soft;
+                }
+                if !(is_first && is_area) {
+                    lit = scene_lamp(bare, view, arrival, out, glossy && lamp.kind == SCENE_LIGHT_BODY);
+                }
+            }
+            fraction = light_weight(lit) + light_weight(glow);
+            k += 1u;
+            if k <= count {
+                total += fraction;
+                if one && fraction > 0.0 {
+                    if rest * total < fraction || total <= fraction {
+                        rest *= total / fraction;
+                        drawn = index;
+                    } else {
+                        rest = (rest * total - fraction) / (total - fraction);
+                    }
+                }
+                if k == count {
+                    // Positions at equal steps along what all give together: the lamps that they fall on are drawn.
+                    step = total / f32(max(draws, 1u));
+                    next = numbers.w * step;
+                    if total <= 0.0 {
+                        k = 2u * count;
+                    } else if one {
+                        k = count + drawn;
+                    }
+                }
                 continue;
             }
-            let times = floor((run - next) / step) + 1.0;
-            next += times * step;
-            weight = times * step / fraction;
-        } else if fraction <= total * SCENE_MIN_LAMP {
-            continue;
+            run += fraction;
+            is_asked = fraction > total * SCENE_MIN_LAMP;
+            if one {
+                is_asked = true;
+                weight = total / fraction;
+            } else if few {
+                is_asked = next < run;
+                if is_asked {
+                    let times = floor((run - next) / step) + 1.0;
+                    next += times * step;
+                    weight = times * step / fraction;
+                }
+            }
+            if is_asked && !is_area {
+                result.flat_light += light_weight(glow);
+                result.relief_light += light_weight(relief);
+            }
+            is_asked = is_asked && !(spared && light_weight(lit) <= total * SCENE_MIN_LAMP);
         }
-        if !is_area {
-            result.flat_light += light_weight(glow);
-            result.relief_light += light_weight(relief);
-        }
-        if spared && light_weight(lit) <= total * SCENE_MIN_LAMP {
-            continue;
+        if !is_asked {
+            break;
         }
         // Each lamp has places of its own; they come from other digits of the number that draws a lamp.
         let digits = fract(numbers.w * vec2f(SCENE_DIGIT, SCENE_OTHER_DIGIT));
@@ -318,6 +352,10 @@ fn scene_direct(
         }
         result.lit += lit * seen * passes;
         result.glow += glow * blurred * passes;
+        if one || (few && next >= total) {
+            // All are drawn.
+            break;
+        }
     }
     return result;
 }

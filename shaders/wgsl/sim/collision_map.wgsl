@@ -47,32 +47,31 @@ fn collision_map_walk(origin: vec3f, direction: vec3f, keep: u32) -> CollisionMa
     var hits: CollisionMapHits;
     hits.deepest = -1.0;
     var limit = BVH_FAR;
-    var stack: array<u32, BVH_STACK>;
     var depth = 1u;
+    bvh_stack[0] = 0u;
+    bvh_enters[0] = 0.0;
     // Each node is visited once at most, so this ends.
     while depth > 0u {
         depth -= 1u;
-        let at = stack[depth];
-        let node = bvh_nodes[at];
-        if bvh_enter(node, origin, inverse, 0.0, limit) >= BVH_FAR {
+        let child = bvh_stack[depth];
+        if !bvh_is_before(bvh_enters[depth], limit) {
             continue;
         }
-        if node.count == 0u {
-            // The nearer child first: its triangles may make the other unnecessary.
-            let to_left = bvh_enter(bvh_nodes[node.link], origin, inverse, 0.0, limit);
-            let to_right = bvh_enter(bvh_nodes[node.link + 1u], origin, inverse, 0.0, limit);
-            let swap = to_right < to_left;
-            if max(to_left, to_right) < BVH_FAR {
-                stack[depth] = node.link + select(1u, 0u, swap);
-                depth += 1u;
-            }
-            if min(to_left, to_right) < BVH_FAR {
-                stack[depth] = node.link + select(0u, 1u, swap);
-                depth += 1u;
+        if child < BVH_LEAF {
+            // The nearest child first: its triangles may make the others unnecessary.
+            let node = bvh_nodes[child];
+            let order = bvh_order(bvh_enter(node, origin, inverse, 0.0, limit), node.child);
+            for (var k = 4u; k > 0u; k -= 1u) {
+                if order.enters[k - 1u] < BVH_FAR {
+                    bvh_stack[depth] = order.child[k - 1u];
+                    bvh_enters[depth] = order.enters[k - 1u];
+                    depth += 1u;
+                }
             }
             continue;
         }
-        for (var slot = node.link; slot < node.link + node.count; slot += 1u) {
+        let of_leaf = bvh_leaf(child);
+        for (var slot = of_leaf.x; slot < of_leaf.y; slot += 1u) {
             let triangle = bvh_triangles[slot];
             let distance = bvh_triangle(triangle, origin, direction).x;
             if !(distance > 0.0 && distance < limit) {

@@ -1,8 +1,10 @@
 //! `shaders/wgsl/bvh` against `downpour-bvh`.
 
-use downpour_bvh::{BvhNode, BvhTriangle, bvh_enter, bvh_inverse, bvh_is_before, bvh_triangle};
+use downpour_bvh::{
+    BvhNode, BvhTriangle, bvh_enter, bvh_inverse, bvh_is_before, bvh_leaf, bvh_order, bvh_triangle,
+};
 use downpour_math::rng::rng_unit;
-use downpour_shaders::bvh::{BVH, BVH_EDGE_SLACK};
+use downpour_shaders::bvh::{BVH, BVH_EDGE_SLACK, BVH_LEAF, BVH_NO_CHILD};
 
 use crate::Domain::{Below, Fixed, Made, OneOf, Or, Uniform, Unit3};
 use crate::words::{Args, IntoWords as _};
@@ -34,9 +36,14 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &[
                 Made(|r| {
                     let unit = r.map(rng_unit);
-                    let low = [unit[0] - 0.5, unit[1] - 0.5, unit[2] - 0.5];
-                    let high = low.map(|c| c + 0.05 + 0.5 * unit[3]);
-                    [low.map(f32::to_bits).to_vec(), vec![1], high.map(f32::to_bits).to_vec(), vec![2]]
+                    // Boxes beside each other, around the middle; every other node has three of them.
+                    let low =
+                        |axis: usize| std::array::from_fn(|k| unit[(axis + k) % 4] - 0.5 + 0.1 * k as f32);
+                    let high = |low: [f32; 4]| low.map(|c| c + 0.05 + 0.5 * unit[3]);
+                    let lows: [[f32; 4]; 3] = std::array::from_fn(low);
+                    let all = [lows, lows.map(high)].concat();
+                    let last = if r[0] % 2 == 0 { 9 } else { BVH_NO_CHILD };
+                    [all.as_flattened().iter().map(|c| c.to_bits()).collect(), vec![1, 2 << 28 | 5, 3, last]]
                         .concat()
                 }),
                 Unit3,
@@ -55,11 +62,38 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             )
             .with_outliers(1.0e-3),
             |a| {
-                let low = a.f32s();
-                let link = a.u32();
-                let high = a.f32s();
-                let count = a.u32();
-                bvh_enter(&BvhNode { low, link, high, count }, a.f32s(), a.f32s(), a.f32(), a.f32()).words()
+                let [low_x, low_y, low_z, high_x, high_y, high_z] = std::array::from_fn(|_| a.f32s());
+                let child = std::array::from_fn(|_| a.u32());
+                let node = BvhNode { low_x, low_y, low_z, high_x, high_y, high_z, child };
+                bvh_enter(&node, a.f32s(), a.f32s(), a.f32(), a.f32()).words()
+            },
+        ),
+        FunctionCase::new(
+            "bvh_order",
+            &BVH,
+            // Some of them are equal.
+            &[[OneOf(&[0.0, 0.25, 0.5, 1.0, 3.0e38]); 4], [Below(9); 4]].concat(),
+            Tol::exact("a network of comparisons"),
+            |a| {
+                let enters = a.f32s();
+                let order = bvh_order(enters, std::array::from_fn(|_| a.u32()));
+                [order.enters.words(), order.child.words()].concat()
+            },
+        ),
+        FunctionCase::new(
+            "bvh_leaf",
+            &BVH,
+            &[Made(|r| {
+                let ends = [0, 7, BVH_LEAF - 20];
+                vec![
+                    (1 + r[0] % 14) * BVH_LEAF
+                        + ends.get(r[1] as usize % 4).copied().unwrap_or(r[2] % (BVH_LEAF - 20)),
+                ]
+            })],
+            Tol::exact("shifts of integers"),
+            |a| {
+                let triangles = bvh_leaf(a.u32());
+                vec![triangles.start as u32, triangles.end as u32]
             },
         ),
         FunctionCase::new(

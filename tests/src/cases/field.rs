@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use downpour_bvh::bvh_bounds;
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_drop::splash::{FILM_M, SplashLaw};
 use downpour_gpu::{BufferPool, Gpu, GpuError};
@@ -290,8 +291,7 @@ pub(super) fn obstacles_on<'a>(
     origin: DVec3,
 ) -> ObstaclesOnGpu<'a> {
     let [_, nodes, triangles, corners, table, texels] = &lighting.buffers;
-    let root = scene.nodes[0];
-    let bounds = Some([Vec3::from(root.low), Vec3::from(root.high)]);
+    let bounds = bvh_bounds(&scene.nodes).map(|corners| corners.map(Vec3::from));
     let holes = has_holes.then_some(HolesOnGpu { corners, table, texels });
     ObstaclesOnGpu { nodes, triangles, holes, bounds, origin }
 }

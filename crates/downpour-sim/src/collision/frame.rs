@@ -1,6 +1,6 @@
 //! Position and resolution of a map.
 
-use downpour_bvh::{Bvh, BvhNode, BvhTriangle};
+use downpour_bvh::{Bvh, BvhNode, BvhTriangle, bvh_bounds};
 use downpour_math::OutOfRange;
 use downpour_math::ops;
 use downpour_shaders::sim::collision::COLLISION_STEEP;
@@ -159,11 +159,9 @@ impl CollisionFrame {
         options.check()?;
         let [across, along, fall] = axes(options.fall)?;
         let anchor = options.anchor;
-        let empty = triangles.is_empty();
-        let bounds = nodes.first().filter(|_| !empty);
-        let [low, high] = bounds.map_or([options.center; 2], |root| {
-            [root.low, root.high].map(|corner| Vec3::from(corner) - anchor)
-        });
+        let bounds = bvh_bounds(nodes);
+        let [low, high] =
+            bounds.map_or([options.center; 2], |corners| corners.map(|corner| Vec3::from(corner) - anchor));
         let farthest = low.abs().max(high.abs()).max_element();
         if !(low.is_finite() && high.is_finite() && farthest <= 2.0 * MAX_COORDINATE_M) {
             return Err(SimError::OutOfRange(OutOfRange {

@@ -3,8 +3,10 @@
 //! Surfaces may have holes ([`Holes`]). The kernel of the same name does not support them: maps with holes are made
 //! here.
 
-use downpour_bvh::{BvhNode, BvhTriangle, Hit, bvh_enter, bvh_inverse, bvh_triangle};
-use downpour_shaders::bvh::{BVH_FAR, BVH_STACK};
+use downpour_bvh::{
+    BvhNode, BvhTriangle, Hit, bvh_enter, bvh_inverse, bvh_is_before, bvh_leaf, bvh_order, bvh_triangle,
+};
+use downpour_shaders::bvh::{BVH_FAR, BVH_LEAF, BVH_STACK};
 use downpour_shaders::sim::collision::{
     COLLISION_LAYERS, COLLISION_MAP_BACK, COLLISION_MAP_BETWEEN, COLLISION_MAP_FRONT, COLLISION_MAP_HITS,
     COLLISION_MAP_LEAVES, COLLISION_NONE, COLLISION_SOLID,
@@ -82,33 +84,26 @@ pub fn collision_map_walk(
     let mut hits =
         CollisionMapHits { depths: [0.0; HITS], slots: [0; HITS], count: 0, deepest: -1.0, deepest_slot: 0 };
     let mut limit = BVH_FAR;
-    let mut stack = [0u32; BVH_STACK as usize];
+    let mut stack = [(0u32, 0.0f32); BVH_STACK as usize];
     let mut depth = 1;
     while depth > 0 {
         depth -= 1;
-        let at = stack[depth];
-        let node = &nodes[at as usize];
-        if bvh_enter(node, from, inverse, 0.0, limit) >= BVH_FAR {
+        let (child, enter) = stack[depth];
+        if !bvh_is_before(enter, limit) {
             continue;
         }
-        if node.count == 0 {
-            // The nearer child first: its triangles may make the other unnecessary.
-            let [left, right] = [node.link, node.link + 1];
-            let to_left = bvh_enter(&nodes[left as usize], from, inverse, 0.0, limit);
-            let to_right = bvh_enter(&nodes[right as usize], from, inverse, 0.0, limit);
-            let swap = to_right < to_left;
-            if to_left.max(to_right) < BVH_FAR {
-                stack[depth] = if swap { left } else { right };
-                depth += 1;
-            }
-            if to_left.min(to_right) < BVH_FAR {
-                stack[depth] = if swap { right } else { left };
+        if child < BVH_LEAF {
+            // The nearest child first: its triangles may make the others unnecessary.
+            let node = &nodes[child as usize];
+            let order = bvh_order(bvh_enter(node, from, inverse, 0.0, limit), node.child);
+            for k in (0..4).rev().filter(|&k| order.enters[k] < BVH_FAR) {
+                stack[depth] = (order.child[k], order.enters[k]);
                 depth += 1;
             }
             continue;
         }
-        for slot in node.link..node.link + node.count {
-            let triangle = &triangles[slot as usize];
+        for slot in bvh_leaf(child) {
+            let triangle = &triangles[slot];
             let [distance, u, v] = bvh_triangle(triangle, from, towards);
             if !(distance > 0.0 && distance < limit) {
                 continue;
@@ -118,7 +113,7 @@ pub fn collision_map_walk(
             }
             if distance > hits.deepest && collision_map_faces(triangle, direction) {
                 hits.deepest = distance;
-                hits.deepest_slot = slot;
+                hits.deepest_slot = slot as u32;
             }
             // Insertion sort from the far end, which drops out if the list is full.
             let mut k = hits.count;
@@ -136,7 +131,7 @@ pub fn collision_map_walk(
                 k -= 1;
             }
             hits.depths[k] = distance;
-            hits.slots[k] = slot;
+            hits.slots[k] = slot as u32;
             if hits.count == keep && keep < HITS {
                 limit = hits.depths[keep - 1];
             }

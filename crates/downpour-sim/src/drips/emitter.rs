@@ -1,6 +1,5 @@
 //! A point that drips: its drops at any time.
 
-use downpour_bvh::BvhNode;
 use downpour_drop::drip::{BROAD_RADIUS_M, Drip};
 use downpour_drop::fall_speed::time_of_fall;
 use downpour_math::rng::{rng_draw, rng_unit, seed_words};
@@ -123,10 +122,10 @@ impl Emitter {
     pub(super) fn land(&mut self, obstacles: &Obstacles<'_>, facets: &Facets<'_>, wind: &UniformWind) {
         let fall = self.fall(wind, 0.0);
         self.landing = fall.landing(obstacles, facets, MAX_FALL_S);
-        let bottom = obstacles.nodes.first().filter(|_| !obstacles.triangles.is_empty());
-        let depth = |root: &BvhNode| self.position.y - obstacles.origin.y - f64::from(root.low[1]) + 1.0;
-        let to_bottom = bottom
-            .map_or(MAX_FALL_S, |root| time_of_fall(self.terminal, depth(root).max(0.0)).min(MAX_FALL_S));
+        let depth = |low: f32| self.position.y - obstacles.origin.y - f64::from(low) + 1.0;
+        let to_bottom = obstacles.corners().map_or(MAX_FALL_S, |[low, _]| {
+            time_of_fall(self.terminal, depth(low.y).max(0.0)).min(MAX_FALL_S)
+        });
         self.longest_s = match self.landing {
             Some(landing) if wind.is_steady() => landing.after_s,
             _ => to_bottom,

@@ -71,7 +71,7 @@ impl<'a> Fall<'a> {
             return None;
         }
         let mut from = self.start - obstacles.origin;
-        let lowest = obstacles.nodes.first().map_or(f64::INFINITY, |root| f64::from(root.low[1])) - 1.0;
+        let lowest = obstacles.corners().map_or(f64::INFINITY, |[low, _]| f64::from(low.y)) - 1.0;
         let steps = (age_s.min(MAX_FALL_S) / FINE_S).ceil().max(0.0) as u32;
         for step in 1..=steps {
             let begin_s = f64::from(step - 1) * FINE_S;

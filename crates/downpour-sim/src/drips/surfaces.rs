@@ -136,11 +136,11 @@ impl Surfaces {
         let origin = [obstacles.origin.x, obstacles.origin.z];
         let corner = [0, 1].map(|k| region.first[k] as f64 * CELL_M - origin[k]);
         let mut surfaces = Self { region, corner, sheets: Vec::new(), firsts: Vec::new() };
-        let Some(root) = obstacles.nodes.first().filter(|_| !obstacles.triangles.is_empty()) else {
+        let Some([_, high]) = obstacles.corners() else {
             surfaces.firsts = vec![0; columns * rows + 1];
             return surfaces;
         };
-        let top = root.high[1] + 1.0;
+        let top = high.y + 1.0;
         let row = |row: usize| {
             let cells = row * columns..(row + 1) * columns;
             let mut sheets = Vec::new();

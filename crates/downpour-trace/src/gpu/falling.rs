@@ -1,5 +1,6 @@
 //! Drops of a picture on a GPU: those of a list, or those that the device finds in a rain.
 
+use downpour_bvh::bvh_bounds;
 use downpour_gpu::{BufferSource, Dispatch, Gpu, GpuError, Readback, ReadbackPool, wgpu};
 use downpour_render::gpu::LightingOnGpu;
 use downpour_sim::field::{EyeDrop, FallingDrop, RainField};
@@ -91,12 +92,11 @@ impl FieldDrops<'_> {
         lighting: &LightingOnGpu,
     ) -> Result<FieldPass<'a>, GpuPictureError> {
         let [_, nodes, triangles, corners, table, texels] = &lighting.buffers;
-        let root = scene.nodes.first().filter(|_| !scene.triangles.is_empty());
         let obstacles = ObstaclesOnGpu {
             nodes,
             triangles,
             holes: Some(HolesOnGpu { corners, table, texels }),
-            bounds: root.map(|root| [Vec3::from(root.low), Vec3::from(root.high)]),
+            bounds: bvh_bounds(&scene.nodes).map(|corners| corners.map(Vec3::from)),
             origin: self.origin,
         };
         Ok(pipeline.prepare(buffers, (self.field, self.on_gpu), &obstacles, &self.search)?)

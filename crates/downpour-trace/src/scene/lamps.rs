@@ -260,44 +260,70 @@ impl SceneView<'_> {
             let mut arrival = self.scene_arrival(&lamp, surface, if is_area { 0.0 } else { standoff }, under);
             // The ray ends before the surface that shines.
             arrival.distance -= if is_area { 4.0 * self.frame.nearest } else { 0.0 };
+            let nothing = SceneShare {
+                arrival,
+                lit: Vec3::ZERO,
+                glow: Vec3::ZERO,
+                relief: Vec3::ZERO,
+                soft: 0.0,
+                is_area,
+            };
+            if light_weight(arrival.irradiance) <= 0.0 {
+                return nothing;
+            }
             let soft = match footprint {
                 Some(_) if is_area => 1.0,
                 Some(footprint) => scene_softness(arrival.distance, arrival.spread, footprint),
                 None => 0.0,
             };
             // The part that is told apart, with the facet's normal in place of the relief's.
-            let (mut glow, mut relief) = (Vec3::ZERO, Vec3::ZERO);
+            let mut share = SceneShare { soft, ..nothing };
             let mut bare = *surface;
             if soft > 0.0 {
-                relief = self.scene_glow(surface, view, &arrival, out) * soft;
-                glow = relief;
+                share.relief = self.scene_glow(surface, view, &arrival, out) * soft;
+                share.glow = share.relief;
                 if !is_area {
                     let level = Surface { normal: surface.facet, ..*surface };
-                    glow = self.scene_glow(&level, view, &arrival, out) * soft;
+                    share.glow = self.scene_glow(&level, view, &arrival, out) * soft;
                 }
                 bare.diffuse *= 1.0 - soft;
             }
-            let mut lit = Vec3::ZERO;
             if !(is_first && is_area) {
                 let seen = glossy && lamp.kind == SCENE_LIGHT_BODY;
-                lit = self.scene_lamp(&bare, view, &arrival, out, seen);
+                share.lit = self.scene_lamp(&bare, view, &arrival, out, seen);
             }
-            SceneShare { arrival, lit, glow, relief, soft, is_area }
+            share
         };
-        let mut total = 0.0;
+        // One of few is drawn while they are added up: what is left of a number that has decided is as good as a new one.
+        let one = few && draws == 1;
+        let (mut total, mut rest, mut drawn) = (0.0, numbers[3], 0);
         for index in 0..count {
             let share = of(index);
-            total += light_weight(share.lit) + light_weight(share.glow);
+            let fraction = light_weight(share.lit) + light_weight(share.glow);
+            total += fraction;
+            if one && fraction > 0.0 {
+                if rest * total < fraction || total <= fraction {
+                    rest *= total / fraction;
+                    drawn = index;
+                } else {
+                    rest = (rest * total - fraction) / (total - fraction);
+                }
+            }
+        }
+        if total <= 0.0 {
+            return result;
         }
         // Positions at equal steps along what all give together: the lamps that they fall on are drawn.
         let step = total / draws.max(1) as f32;
         let (mut run, mut next) = (0.0, numbers[3] * step);
-        for index in 0..count {
+        for index in if one { drawn..drawn + 1 } else { 0..count } {
             let SceneShare { arrival, lit, glow, relief, soft, is_area } = of(index);
             let fraction = light_weight(lit) + light_weight(glow);
             run += fraction;
             let mut weight = 1.0;
-            if few {
+            if one {
+                weight = total / fraction;
+            } else if few {
                 if next >= run {
                     continue;
                 }
