@@ -24,7 +24,7 @@ impl Bounds {
         self.with(other.low).with(other.high)
     }
 
-    /// What two boxes share, which may be flat.
+    /// The intersection of two boxes, which may be flat.
     pub(crate) fn common(self, other: &Self) -> Option<Self> {
         let low: [f32; 3] = std::array::from_fn(|k| self.low[k].max(other.low[k]));
         let high: [f32; 3] = std::array::from_fn(|k| self.high[k].min(other.high[k]));

@@ -110,7 +110,7 @@ pub fn bvh_hit(
     bvh_walk::<false>(nodes, triangles, origin, direction, nearest, farthest)
 }
 
-/// What is in the way of a ray between two distances, in the arrays of a [`Bvh`]: any hit of a triangle through which nothing passes, or
+/// A hit in the way of a ray between two distances, in the arrays of a [`Bvh`]: any of a triangle through which nothing passes, or
 /// the nearest hit of all if its triangle [lets rays through](BvhTriangle::lets_through); what is behind the latter may be left out.
 #[must_use]
 pub fn bvh_blocker(

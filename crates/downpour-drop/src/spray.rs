@@ -33,7 +33,7 @@ pub const DROPLET_M: f64 = 0.3e-3;
 /// Largest share of a drop's water that is thrown up.
 const MAX_SHARE: f64 = 0.75;
 
-/// How fast the share grows with the splash parameter.
+/// Growth of the share with the splash parameter.
 const PER_K: f64 = 0.003;
 
 /// Splash parameter above which a drop throws up water: that of a dry surface, and what a film as deep as the drop adds.

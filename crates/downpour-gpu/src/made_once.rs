@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-/// What is made when it is first asked for; after an error it is tried again.
+/// A value that is made when it is first asked for; after an error it is tried again.
 ///
 /// # Errors
 /// Those of `make`.

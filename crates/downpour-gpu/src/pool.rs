@@ -122,7 +122,7 @@ struct Kept {
     used: HashMap<&'static str, usize>,
     /// Buffers that were given back.
     returned: HashMap<&'static str, Vec<wgpu::Buffer>>,
-    /// What was bound, with the last frame that asked for it.
+    /// A binding, with the last frame that asked for it.
     bindings: HashMap<BoundTo, (wgpu::BindGroup, u64)>,
     /// Number of the current frame.
     frame: u64,

@@ -78,7 +78,7 @@ pub struct Picture {
     pub environment: Vec<[f32; 4]>,
     /// The scene through the rain and through a pane of glass, if there is one.
     pub through_glass: Option<Vec<[f32; 3]>>,
-    /// What glow adds to the radiance of each pixel, below 0 where it takes more than it brings; empty if nothing glows.
+    /// Radiance that glow adds to each pixel, below 0 where it takes more than it brings; empty if nothing glows.
     pub glow: Vec<[f32; 4]>,
     /// The passes in their order, with the milliseconds that each took.
     pub passes: Vec<(&'static str, f64)>,

@@ -82,7 +82,7 @@ pub fn tone_automatic_exposure(pixels: &[[f32; 4]]) -> f32 {
     (GRAY / mean).clamp(1.0 / 65_536.0, 65_536.0)
 }
 
-/// What [`tone_srgb`] makes of linear numbers, by their bits: numbers above 0 have the order of their bits. A picture has millions of
+/// Table of [`tone_srgb`], by the bits of linear numbers: numbers above 0 have the order of their bits. A picture has millions of
 /// numbers, and a power of each would take longer than its rain.
 struct Encoded {
     /// For each value but 0 the least number that becomes it.
@@ -106,7 +106,7 @@ static ENCODED: LazyLock<Encoded> = LazyLock::new(|| {
 });
 
 impl Encoded {
-    /// What [`tone_srgb`] makes of a linear number.
+    /// [`tone_srgb`] of a linear number, from the table.
     fn of(&self, linear: f32) -> u8 {
         // A number that is none becomes 0, as there, and 0 has no sign.
         let bits = (linear.clamp(0.0, 1.0).max(0.0) + 0.0).to_bits();

@@ -93,7 +93,7 @@ pub(crate) struct Class {
 pub struct RainField {
     pub(crate) classes: Vec<Class>,
     pub(crate) speed: TerminalSpeed,
-    /// What that is made of.
+    /// Model and air of these speeds.
     #[cfg_attr(not(feature = "wgpu"), expect(dead_code, reason = "for a device that finds droplets"))]
     pub(crate) falls: (FallSpeedModel, Air),
     pub(crate) wind: UniformWind,

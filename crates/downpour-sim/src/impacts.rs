@@ -133,7 +133,7 @@ impl RainField {
         self.impacts_of(&facets, &mut Places::new(obstacles, 0.0), span_s, all, |impact| Some(*impact))
     }
 
-    /// What `make` makes of the impacts of a span of time: of each class those that `of_class` says. `make` is asked before it is known
+    /// Results of `make` for the impacts of a span of time: of each class those that `of_class` says. `make` is asked before it is known
     /// whether the drop comes from the sky. Impacts on surfaces that are not in the places may be left out.
     fn impacts_of<P: Fn(&Bounds) -> bool, W: Fn(&Candidate) -> bool + Sync, T: Send>(
         &self,

@@ -215,7 +215,7 @@ impl StepListWorld<'_> {
         self.frame.volume == STEP_VOLUME_VIEW
     }
 
-    /// Where a drop is at the picture's time; in a box it may have come in again.
+    /// Position of a drop at the picture's time; in a box it may have come in again.
     fn step_list_place(&self, number: u32, drop: &StepDrop) -> StepListPlace {
         let frame = self.frame;
         let velocity = Vec3::from(drop.velocity);

@@ -41,7 +41,7 @@ struct Buffer {
     materials: Vec<Material>,
 }
 
-/// What a file is made of.
+/// Parts of a file.
 #[derive(Clone, Copy)]
 struct Parts<'a> {
     pieces: &'a [Piece],

@@ -13,14 +13,17 @@ use downpour_render::light::{Light, LightSource};
 use downpour_render::spacing::RaySpacing;
 use downpour_shaders::render::scene::{
     SCENE_LIGHT_BODY, SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_ROWS, SCENE_PICTURE, SCENE_SKY_LEVELS,
-    SKYLIGHT_RADIUS,
 };
 use glam::Vec3;
 
 use crate::billboards::Impostors;
+use crate::skylight::skylight_radius;
 
-/// Part of the pixels over which the filter takes means that one is.
-const WINDOW_FRACTION: f32 = 1.0 / ((2 * SKYLIGHT_RADIUS + 1) * (2 * SKYLIGHT_RADIUS + 1)) as f32;
+/// Part of the rays over which the filter takes means that one ray is.
+fn window_fraction(rays: u32, spacing: u32) -> f32 {
+    let edge = 2 * skylight_radius(rays, spacing) + 1;
+    1.0 / (edge * edge * rays.max(1)) as f32
+}
 
 /// Largest distance in pixels between those whose rays look for the light of sky and surfaces: [`RenderFrame::ray_spacing`].
 pub const MAX_RAY_SPACING: u32 = 4;
@@ -282,7 +285,7 @@ impl RenderFrame {
             sky_rays,
             first_row: 0,
             nearest: (extent * 1.0e-5).max(far.min(1.0e5) * 1.0e-6).max(1.0e-6),
-            ray_fraction: WINDOW_FRACTION / sky_rays.max(1) as f32,
+            ray_fraction: window_fraction(sky_rays, 1),
             projection: SCENE_PICTURE,
             suns_out: 0,
             puddles: scene.puddles,
@@ -312,7 +315,7 @@ impl RenderFrame {
         let place = rng_draw([self.camera.seed, 0], 0, 0, SPACING_DIMENSION)[0] % (spacing * spacing);
         // A ray stands for all of its cell.
         let alone = 1.0 / self.sky_rays.max(1) as f32;
-        let ray_fraction = (WINDOW_FRACTION * alone * (spacing * spacing) as f32).min(alone);
+        let ray_fraction = (window_fraction(self.sky_rays, spacing) * (spacing * spacing) as f32).min(alone);
         Self {
             ray_spacing: spacing,
             ray_column: place % spacing,

@@ -12,7 +12,7 @@
 //!   ([`scatter`](crate::scatter)). Such a ray finds the sky at the level of its own width, or a surface, which has light of
 //!   its own: of one lamp drawn for all, and of the next ray. At most `PATH_BOUNCES` follow each other, and fewer where
 //!   surfaces are dark: each survives with the probability of its albedo. The light that falls on the last surface is taken to
-//!   be the mean of what the path has met, and a tenth of the open sky's.
+//!   be the mean of what the path has met, thrown back and forth.
 //!
 //! [`skylight`](crate::skylight) takes means of this light over neighboring pixels, but for that of mirrors.
 //!
@@ -53,7 +53,7 @@ pub use downpour_render::path_lattice::{path_lattice_numbers, path_lattice_words
 use draw::{path_onward, path_replaced, path_water_fraction, path_water_ray};
 pub(crate) use plan::path_max;
 use plan::{
-    PathPlan, path_albedo, path_cover, path_matte, path_open, path_secondary, path_submerged,
+    PathPlan, path_albedo, path_ambient, path_cover, path_matte, path_open, path_secondary, path_submerged,
     path_water_surface,
 };
 
@@ -542,7 +542,7 @@ impl SceneView<'_> {
                         }
                     }
                 } else if bounce + 1 == PATH_BOUNCES {
-                    ambient = self.path_ambient(&found, (given + lit) / (bounce + 1) as f32);
+                    ambient = path_ambient(&found, (given + lit) / (bounce + 1) as f32);
                 }
                 let own = (path_albedo(&found) + found.normal_reflectance) * ambient;
                 light = light.path_accumulated(&ray, own, of_shown);

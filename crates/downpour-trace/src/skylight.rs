@@ -1,8 +1,9 @@
 //! Light of sky and surfaces on surfaces: means over what the pixels around a pixel have found on the same surface. Twin of
 //! `shaders/wgsl/render/skylight.wgsl`.
 //!
-//! First the mean of a window of 7 x 7 pixels, whose weights fall to 0 at 4 pixels, with the variance of that mean. Then means
-//! of such means, 4, 8 and 16 pixels apart: as far as two of them differ by no more than their noise (H. Dammertz et al., HPG
+//! First the mean of a window of 7 x 7 pixels, whose weights fall to 0 at 4 pixels, with the variance of that mean; where several rays
+//! of each pixel look for light, of 5 x 5 or 3 x 3 ([`skylight_radius`]): pictures of more rays are sharper, too. Then means
+//! of such means, 4, 8 and 16 pixels apart, or less by as much: as far as two of them differ by no more than their noise (H. Dammertz et al., HPG
 //! 2010, for the steps; C. Schied et al., HPG 2017, for the variance). A hat of twice the width is the sum of three hats, halved
 //! at the sides: what one pixel has found is spread by one hat in the end, 32 pixels to each side, without edges or overlaps.
 //!
@@ -18,7 +19,7 @@ use downpour_math::color::color_luminance;
 use downpour_render::spacing::window;
 use downpour_shaders::render::scene::{
     SKYLIGHT_FILM, SKYLIGHT_FILM_EDGE, SKYLIGHT_GUESSED, SKYLIGHT_LOBE, SKYLIGHT_LOOSE,
-    SKYLIGHT_LOOSE_ROUGHNESS, SKYLIGHT_NOISE, SKYLIGHT_OWN, SKYLIGHT_PASSES, SKYLIGHT_RADIUS, SKYLIGHT_STEP,
+    SKYLIGHT_LOOSE_ROUGHNESS, SKYLIGHT_MANY, SKYLIGHT_NOISE, SKYLIGHT_OWN, SKYLIGHT_PASSES, SKYLIGHT_RADIUS,
 };
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
@@ -28,10 +29,23 @@ use crate::path::PathSlot;
 use crate::scene::SceneView;
 use crate::trace::{TraceAmbient, TraceSlot, trace_unpack};
 
-/// Weight of a pixel by its distance along an edge, in pixels.
+/// Pixels to each side of a window that holds enough rays, if so many of a pixel look for light, in one pixel of each cell of `spacing`
+/// times `spacing`.
 #[must_use]
-pub fn skylight_hat(from: u32, to: u32) -> f32 {
-    (SKYLIGHT_RADIUS + 1 - from.abs_diff(to)) as f32
+pub fn skylight_radius(rays: u32, spacing: u32) -> u32 {
+    if spacing > 1 || rays <= 1 {
+        SKYLIGHT_RADIUS
+    } else if rays >= SKYLIGHT_MANY {
+        1
+    } else {
+        SKYLIGHT_RADIUS - 1
+    }
+}
+
+/// Weight of a pixel by its distance along an edge, in pixels, in a window of a radius.
+#[must_use]
+pub fn skylight_hat(from: u32, to: u32, radius: u32) -> f32 {
+    (radius + 1 - from.abs_diff(to)) as f32
 }
 
 /// A slot of a pixel, unpacked.
@@ -109,6 +123,8 @@ struct Pixels<'a> {
     slots: &'a [[SkylightSlot; 2]],
     /// True if the rain has made surfaces wet.
     wet: bool,
+    /// Pixels to each side of a window.
+    radius: u32,
 }
 
 impl SceneView<'_> {
@@ -123,7 +139,8 @@ impl SceneView<'_> {
         let slots: Vec<[SkylightSlot; 2]> =
             ambient.par_iter().map(|pixel| [0, 1].map(|slot| skylight_slot(pixel, slot, eye))).collect();
         let [width, height] = self.frame.camera.size();
-        let pixels = &Pixels { frame: self.frame, slots: &slots, wet: self.frame.wetness > 0 };
+        let radius = skylight_radius(self.frame.sky_rays, self.frame.ray_spacing);
+        let pixels = &Pixels { frame: self.frame, slots: &slots, wet: self.frame.wetness > 0, radius };
         let all = |of: &(dyn Fn(u32, u32, usize) -> Vec4 + Sync)| -> Vec<[Vec4; 2]> {
             (0..height)
                 .into_par_iter()
@@ -132,7 +149,8 @@ impl SceneView<'_> {
         };
         let mut means = all(&|x, y, k| pixels.skylight_mean(x, y, k));
         for pass in 0..SKYLIGHT_PASSES {
-            means = all(&|x, y, k| pixels.skylight_wide(&means, x, y, k, SKYLIGHT_STEP << pass));
+            // As far apart as the weights of a window reach, so that they add up to the same everywhere.
+            means = all(&|x, y, k| pixels.skylight_wide(&means, x, y, k, (pixels.radius + 1) << pass));
         }
         let shown = |(k, pixel): (usize, &TraceAmbient)| {
             let (x, y) = (k as u32 % width, k as u32 / width);
@@ -190,11 +208,11 @@ impl Pixels<'_> {
             if weight > 0.0 {
                 break;
             }
-            for row in window(y, apart, SKYLIGHT_RADIUS, *ray_row, camera.height) {
-                for column in window(x, apart, SKYLIGHT_RADIUS, *ray_column, camera.width) {
+            for row in window(y, apart, self.radius, *ray_row, camera.height) {
+                for column in window(x, apart, self.radius, *ray_column, camera.width) {
                     let other = index(column, row);
-                    let mut counts =
-                        skylight_hat(x, column) * skylight_hat(y, row) * self.slots[other][slot].weight;
+                    let hat = skylight_hat(x, column, self.radius) * skylight_hat(y, row, self.radius);
+                    let mut counts = hat * self.slots[other][slot].weight;
                     if row != y || column != x {
                         counts *= skylight_near(own, &self.slots[other][slot], self.wet);
                     }
@@ -234,10 +252,10 @@ impl Pixels<'_> {
             return Vec3::ZERO;
         }
         let (mut sum, mut weight) = (Vec3::ZERO, 0.0);
-        for row in window(y, 1, SKYLIGHT_RADIUS, 0, camera.height) {
-            for column in window(x, 1, SKYLIGHT_RADIUS, 0, camera.width) {
+        for row in window(y, 1, self.radius, 0, camera.height) {
+            for column in window(x, 1, self.radius, 0, camera.width) {
                 let other = (row * camera.width + column) as usize;
-                let hat = skylight_hat(x, column) * skylight_hat(y, row);
+                let hat = skylight_hat(x, column, self.radius) * skylight_hat(y, row, self.radius);
                 let counts = hat * skylight_near(&own, &self.slots[other][slot], self.wet);
                 let its = skylight_slot(&others[other], slot, camera.eye);
                 let mut few = hat * SKYLIGHT_OWN * its.weight;

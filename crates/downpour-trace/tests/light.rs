@@ -2,7 +2,7 @@
 
 use downpour_drop::optics::optics_fresnel;
 use downpour_math::ops::f64 as exact;
-use downpour_math::rng::{rng_pcg4d, rng_unit};
+use downpour_math::rng::{rng_draw, rng_pcg4d, rng_unit};
 use downpour_render::camera::Viewpoint;
 use downpour_render::light::LightSource;
 use downpour_render::picture::noise_seed;
@@ -430,30 +430,89 @@ fn form_factor(a: f64, b: f64, c: f64) -> f64 {
     (exact::atan2(b, c) - c / slant * exact::atan2(b, slant)) / std::f64::consts::TAU
 }
 
+/// A shed 4 m wide, 6 m deep and 3 m high under an even sky of 2; the door in the wall at z = 3 is 1 m wide and 2 m high.
+fn shed(walls: f32, floor: f32) -> SceneData {
+    let mut builder = SceneBuilder::new();
+    let (walls, floor) = (builder.add_material(diffuse(walls)), builder.add_material(diffuse(floor)));
+    square(&mut builder, floor, Vec3::ZERO, Vec3::Z * 3.0, Vec3::X * 2.0);
+    square(&mut builder, walls, Vec3::Y * 3.0, Vec3::X * 2.0, Vec3::Z * 3.0);
+    square(&mut builder, walls, Vec3::new(0.0, 1.5, -3.0), Vec3::X * 2.0, Vec3::Y * 1.5);
+    for side in [-1.0, 1.0] {
+        square(&mut builder, walls, Vec3::new(2.0 * side, 1.5, 0.0), Vec3::Z * 3.0, Vec3::Y * 1.5);
+        square(&mut builder, walls, Vec3::new(1.25 * side, 1.5, 3.0), Vec3::X * 0.75, Vec3::Y * 1.5);
+    }
+    square(&mut builder, walls, Vec3::new(0.0, 2.5, 3.0), Vec3::X * 0.5, Vec3::Y * 0.5);
+    builder.build(&SkyLight::uniform([2.0; 3]))
+}
+
+/// Radiance of a place on the floor of a shed, over pictures of `seeds` noises: 49 directions that all windows of a picture share meet the
+/// door more or less often.
+fn floor_of(scene: &SceneData, at: Vec3, seeds: u64) -> Result<f64, Box<dyn std::error::Error>> {
+    let of_seed = |seed| Ok(mean(&picture(scene, at + Vec3::Y * 2.0, at, 0.08, [96, 96], seed)?));
+    let means = (0..seeds).map(of_seed).collect::<Result<Vec<f64>, Box<dyn std::error::Error>>>()?;
+    Ok(means.iter().sum::<f64>() / means.len() as f64)
+}
+
 /// The floor of a shed with black walls has the light of the sky that comes in through the door, at every distance.
 #[test]
 fn a_shed_is_lit_through_its_door() -> Outcome {
-    let mut builder = SceneBuilder::new();
-    let (black, floor) = (builder.add_material(diffuse(0.0)), builder.add_material(diffuse(0.5)));
-    // 4 m wide and 6 m deep, 3 m high; the door in the wall at z = 3 is 1 m wide and 2 m high.
-    square(&mut builder, floor, Vec3::ZERO, Vec3::Z * 3.0, Vec3::X * 2.0);
-    square(&mut builder, black, Vec3::Y * 3.0, Vec3::X * 2.0, Vec3::Z * 3.0);
-    square(&mut builder, black, Vec3::new(0.0, 1.5, -3.0), Vec3::X * 2.0, Vec3::Y * 1.5);
-    for side in [-1.0, 1.0] {
-        square(&mut builder, black, Vec3::new(2.0 * side, 1.5, 0.0), Vec3::Z * 3.0, Vec3::Y * 1.5);
-        square(&mut builder, black, Vec3::new(1.25 * side, 1.5, 3.0), Vec3::X * 0.75, Vec3::Y * 1.5);
-    }
-    square(&mut builder, black, Vec3::new(0.0, 2.5, 3.0), Vec3::X * 0.5, Vec3::Y * 0.5);
-    let scene = builder.build(&SkyLight::uniform([2.0; 3]));
+    let scene = shed(0.0, 0.5);
     for z in [2.0f32, 1.0, -1.0] {
-        let at = Vec3::new(0.0, 0.0, z);
-        // The mean over noises: 49 directions that all windows of a picture share meet the door more or less often.
-        let of_seed = |seed| Ok(mean(&picture(&scene, at + Vec3::Y * 2.0, at, 0.08, [96, 96], seed)?));
-        let means = (0..41).map(of_seed).collect::<Result<Vec<f64>, Box<dyn std::error::Error>>>()?;
-        let found = means.iter().sum::<f64>() / means.len() as f64;
+        let found = floor_of(&scene, Vec3::new(0.0, 0.0, z), 41)?;
         let expected = 0.5 * 2.0 * 2.0 * form_factor(2.0, 0.5, 3.0 - f64::from(z));
         println!("{} m from the door: {found:.4} of {expected:.4}", 3.0 - z);
         assert!((found / expected - 1.0).abs() < 0.04, "{z}: {found}, not {expected}");
+    }
+    Ok(())
+}
+
+/// Radiance of a place on the floor of that shed where all surfaces have one albedo: paths from wall to wall of a box, without an end
+/// but the door.
+fn in_a_box(albedo: f64, z: f64, paths: u32) -> f64 {
+    let (low, high) = (DVec3::new(-2.0, 0.0, -3.0), DVec3::new(2.0, 3.0, 3.0));
+    let path = |path: u32| {
+        let (mut at, mut normal, mut part) = (DVec3::new(0.0, 0.0, z), DVec3::Y, albedo);
+        for bounce in 0.. {
+            let [a, b, ..] = rng_draw([77, 5], path, bounce, 0).map(|word| f64::from(rng_unit(word)));
+            // By the cosine law: a point on a sphere beside the surface.
+            let (height, angle) = (2.0 * a - 1.0, std::f64::consts::TAU * b);
+            let across = (1.0 - height * height).sqrt();
+            let sphere = DVec3::new(across * exact::cos(angle), height, across * exact::sin(angle));
+            let along = (normal + sphere).normalize();
+            let to = |axis: usize| {
+                let wall = if along[axis] > 0.0 { high[axis] } else { low[axis] };
+                (wall - at[axis]) / along[axis]
+            };
+            let axis = (0..3)
+                .filter(|&k| along[k].abs() > 1.0e-9 && to(k) > 1.0e-9)
+                .min_by(|&a, &b| to(a).total_cmp(&to(b)));
+            let Some(axis) = axis else { return 0.0 };
+            at += along * to(axis);
+            if axis == 2 && along.z > 0.0 && at.x.abs() < 0.5 && at.y < 2.0 {
+                return 2.0 * part;
+            }
+            normal = DVec3::ZERO;
+            normal[axis] = -along[axis].signum();
+            part *= albedo;
+            if part < 1.0e-4 {
+                break;
+            }
+        }
+        0.0
+    };
+    (0..paths).map(path).sum::<f64>() / f64::from(paths)
+}
+
+/// The depths of a white shed are as dark as light makes them that has gone from wall to wall many times.
+#[test]
+fn a_white_shed_is_dark_in_its_depths() -> Outcome {
+    let scene = shed(0.8, 0.8);
+    for z in [1.0f32, -2.0] {
+        let found = floor_of(&scene, Vec3::new(0.0, 0.0, z), 41)?;
+        let expected = in_a_box(0.8, f64::from(z), 200_000);
+        // What is left is the light of longer paths than are followed.
+        println!("{} m from the door: {found:.4} of {expected:.4}", 3.0 - z);
+        assert!((found / expected - 1.0).abs() < 0.06, "{z}: {found}, not {expected}");
     }
     Ok(())
 }

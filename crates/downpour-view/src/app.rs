@@ -54,7 +54,7 @@ pub struct AppOptions {
     pub scale: Option<f64>,
 }
 
-/// What is drawn over the picture.
+/// Lines and labels over the picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Overlay {
     /// Models of objects.
@@ -82,7 +82,7 @@ pub enum Wish {
     Screenshot,
 }
 
-/// What is asked for: a new picture is due when it changes.
+/// The picture that is asked for: a new one is due when it changes.
 #[derive(Clone, Debug, PartialEq)]
 struct Asked {
     revision: u64,
@@ -215,7 +215,7 @@ impl App {
         &mut self.clock
     }
 
-    /// What is drawn over the picture.
+    /// Lines and labels over the picture.
     pub fn overlay_mut(&mut self) -> &mut Overlay {
         &mut self.overlay
     }

@@ -13,7 +13,7 @@ use crate::engine::{DeviceChoice, Request, open_device};
 /// Most frames of a clip.
 const MAX_FRAMES: u32 = 100_000;
 
-/// What is rendered.
+/// The picture or clip that is rendered.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JobSettings {
     /// The file; of a clip its name gets the number of the frame.
@@ -30,14 +30,14 @@ pub struct JobSettings {
     pub light_frames: u32,
 }
 
-/// How far a job is.
+/// Progress of a job.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JobProgress {
     /// Frames that are written.
     pub done: u32,
     /// Frames of the whole.
     pub all: u32,
-    /// What came out, when it has ended.
+    /// Its result, when it has ended.
     pub result: Option<Result<String, String>>,
 }
 
@@ -110,7 +110,7 @@ impl Job {
         Ok(job)
     }
 
-    /// How far it is.
+    /// Its progress.
     #[must_use]
     pub fn progress(&self) -> JobProgress {
         self.progress.lock().unwrap_or_else(PoisonError::into_inner).clone()

@@ -22,7 +22,7 @@ pub const LISTS: [&str; 4] = ["wind", "light", "puddle", "drip"];
 pub struct Object {
     /// Its entry.
     pub id: ObjectId,
-    /// What it is: `vortex`, `spot`, `puddle`.
+    /// Its kind: `vortex`, `spot`, `puddle`.
     pub kind: String,
     /// Path of its table.
     pub table: KeyPath,

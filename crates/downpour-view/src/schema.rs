@@ -38,7 +38,7 @@ pub enum Kind {
     Text,
     /// Some numbers.
     Vector {
-        /// How many.
+        /// Their number.
         count: usize,
         /// Least of each.
         min: f64,

@@ -52,7 +52,7 @@ pub struct ScriptError {
     pub file: String,
     /// Number of the line, from 1.
     pub line: usize,
-    /// What is wrong.
+    /// The error.
     pub message: String,
 }
 

@@ -23,7 +23,7 @@ pub struct Look {
 }
 
 impl Look {
-    /// What physics gives.
+    /// The look that physics gives.
     pub const PHYSICAL: Self = Self { visibility: 1.0, streak_length: 1.0, spray: 1.0 };
 }
 

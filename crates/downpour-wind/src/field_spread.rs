@@ -1,4 +1,4 @@
-//! How much the wind differs about a position from the wind there: bounds for drops that are carried toward it. Twin of
+//! Bounds of how much the wind around a position differs from the wind there, for drops that are carried toward it. Twin of
 //! `shaders/wgsl/wind/field_spread.wgsl`.
 
 use glam::{UVec3, Vec3, Vec4};
@@ -69,6 +69,6 @@ pub struct WindFieldSpreadFrame {
     pub grid: WindFieldGrid,
     /// The position, m.
     pub at: [f32; 3],
-    /// How far about it, m.
+    /// Distance from it, m.
     pub reach: f32,
 }

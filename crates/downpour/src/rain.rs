@@ -224,7 +224,7 @@ impl Rain {
         Ok(drops_among(&self.field, &obstacles, &seen, view.time_s, impacts)?)
     }
 
-    /// What stops drops.
+    /// Obstacles that stop drops.
     fn obstacles(&self) -> Obstacles<'_> {
         Obstacles {
             nodes: &self.scene.nodes,
@@ -405,7 +405,7 @@ impl Rain {
     }
 }
 
-/// What falls by some settings.
+/// Rain of some settings.
 struct Falling {
     sizes: DropSizeDistribution,
     field: RainField,

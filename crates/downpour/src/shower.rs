@@ -275,7 +275,7 @@ impl Shower {
         Ok(visible)
     }
 
-    /// What a device is asked for that finds the drops of [`Shower::at`] and has room for `max_room`; `None` for rain that is not in
+    /// Request to a device that finds the drops of [`Shower::at`] and has room for `max_room`; `None` for rain that is not in
     /// closed form.
     ///
     /// # Errors
@@ -292,7 +292,7 @@ impl Shower {
         }
     }
 
-    /// What a device is asked for that finds drops in closed form.
+    /// Request to a device that finds drops in closed form.
     fn closed_view(
         &self,
         field: &Arc<RainField>,
@@ -331,7 +331,7 @@ impl Shower {
         Ok(ShowerView { rain, time_s, view, resolved, pane, droplets })
     }
 
-    /// What a device is asked for that finds the drops of [`Shower::at`]: drops in closed form, of which it has room for `max_room`, or
+    /// Request to a device that finds the drops of [`Shower::at`]: drops in closed form, of which it has room for `max_room`, or
     /// those that it steps. `passed` as there.
     ///
     /// # Errors
@@ -523,7 +523,7 @@ fn drips_least(rain: &Rain, resolved: &Resolved) -> f64 {
     if rain.layers.is_some() { View::default().least_pixels } else { resolved.least_pixels }
 }
 
-/// What stops drops in a scene.
+/// Obstacles that stop drops in a scene.
 fn obstacles(frame_scene: &FrameScene) -> Obstacles<'_> {
     Obstacles {
         nodes: &frame_scene.data.nodes,

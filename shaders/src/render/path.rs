@@ -30,7 +30,7 @@ shared_constants! {
         /// Distance of the lattice's points along one axis: one over the pixels of the filter's window.
         PATH_BETWEEN: f32 = 0.020408163;
         /// Rays that follow each other, at most.
-        PATH_BOUNCES: u32 = 6;
+        PATH_BOUNCES: u32 = 16;
         /// Cosine of the angle between facets up to which a surface is the same.
         PATH_SAME_FACET: f32 = 0.97;
         /// Distance from the other facet's plane up to which a surface is the same, per distance from the eye.

@@ -137,8 +137,10 @@ shared_constants! {
         SCENE_MIN_ROUGHNESS: f32 = 0.06;
         /// Lamps that give less than this part of what all would give cast no ray.
         SCENE_MIN_LAMP: f32 = 0.001;
-        /// Pixels to each side over which the sky's light is averaged.
+        /// Pixels to each side over which the sky's light is averaged, if one ray of each looks for it.
         SKYLIGHT_RADIUS: u32 = 3;
+        /// Rays of a pixel from which a window of one pixel to each side holds enough of them.
+        SKYLIGHT_MANY: u32 = 4;
         /// Distance from the plane of a pixel's surface at which a neighbor no longer counts, per distance from the eye.
         SKYLIGHT_SLACK: f32 = 0.002;
         /// Half the square of the angle, in alphas, at which a neighbor's gloss no longer counts.
@@ -147,9 +149,6 @@ shared_constants! {
         SKYLIGHT_FILM: f32 = 0.6;
         /// Part of that difference over which they cease to be.
         SKYLIGHT_FILM_EDGE: f32 = 0.2;
-        /// Pixels between the means of which the first wider mean is taken: as far as the weights of a window reach, so that
-        /// they add up to the same everywhere.
-        SKYLIGHT_STEP: u32 = 4;
         /// Wider means, each of twice the step.
         SKYLIGHT_PASSES: u32 = 3;
         /// Square of the difference of two means, in the sum of their variances, from which they are not the same.

@@ -320,12 +320,11 @@ fn path_candidate(surface: Surface, a: f32, b: f32, number: f32, fraction: f32) 
     return vec3f(chosen, select(0.0, sum / (f32(PATH_CANDIDATES) * weight), weight > 0.0));
 }
 
-// Light that falls on the last surface of a path, over pi: the mean of what its surfaces gave, thrown back and forth, and a
-// part of the open sky's.
+// Light that falls on the last surface of a path, over pi: the mean of what its surfaces gave, thrown back and forth. A path that has met
+// so many is enclosed by them, and sees no open sky.
 fn path_ambient(surface: Surface, given: vec3f) -> vec3f {
     let albedo = min(surface.diffuse + surface.normal_reflectance, vec3f(1.0));
-    let sky = sky_irradiance(surface.normal) * (surface.occlusion * (1.0 - PATH_ENCLOSED));
-    return (given * PATH_ENCLOSED + sky) / (vec3f(1.0) - albedo * PATH_ENCLOSED);
+    return given * PATH_ENCLOSED / (vec3f(1.0) - albedo * PATH_ENCLOSED);
 }
 
 // A ray drawn for a surface, which the ray before leaves as `leaves` says.

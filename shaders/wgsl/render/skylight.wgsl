@@ -30,9 +30,17 @@ fn skylight_lobe(cosine: f32, roughness: f32) -> f32 {
     return max(1.0 - (1.0 - cosine) / max(SKYLIGHT_LOBE * alpha * alpha, 1.0e-7), 0.0);
 }
 
-// Weight of a pixel by its distance along an edge, in pixels.
-fn skylight_hat(from_pixel: u32, to_pixel: u32) -> f32 {
-    return f32(SKYLIGHT_RADIUS + 1u - (max(from_pixel, to_pixel) - min(from_pixel, to_pixel)));
+// Pixels to each side of a window that holds enough rays, if so many of a pixel look for light.
+fn skylight_radius(rays: u32, spacing: u32) -> u32 {
+    if spacing > 1u || rays <= 1u {
+        return SKYLIGHT_RADIUS;
+    }
+    return select(SKYLIGHT_RADIUS - 1u, 1u, rays >= SKYLIGHT_MANY);
+}
+
+// Weight of a pixel by its distance along an edge, in pixels, in a window of a radius.
+fn skylight_hat(from_pixel: u32, to_pixel: u32, radius: u32) -> f32 {
+    return f32(radius + 1u - (max(from_pixel, to_pixel) - min(from_pixel, to_pixel)));
 }
 
 // A slot, unpacked.
@@ -110,15 +118,16 @@ fn skylight_mean(x: u32, y: u32, slot: u32) -> vec4f {
     var squares = 0.0;
     var weight = 0.0;
     var weights = 0.0;
-    let right = min(x + SKYLIGHT_RADIUS, render_frame.camera.width - 1u);
-    let bottom = min(y + SKYLIGHT_RADIUS, render_frame.camera.height - 1u);
+    let radius = skylight_radius(render_frame.sky_rays, render_frame.ray_spacing);
+    let right = min(x + radius, render_frame.camera.width - 1u);
+    let bottom = min(y + radius, render_frame.camera.height - 1u);
     for (var turn = 0u; turn < 2u && weight <= 0.0; turn += 1u) {
         let apart = select(render_frame.ray_spacing, 1u, turn > 0u);
-        let left = spacing_first(x, apart, SKYLIGHT_RADIUS, render_frame.ray_column);
-        for (var row = spacing_first(y, apart, SKYLIGHT_RADIUS, render_frame.ray_row); row <= bottom; row += apart) {
+        let left = spacing_first(x, apart, radius, render_frame.ray_column);
+        for (var row = spacing_first(y, apart, radius, render_frame.ray_row); row <= bottom; row += apart) {
             for (var column = left; column <= right; column += apart) {
                 let other = skylight_slot(row * render_frame.camera.width + column, slot);
-                var counts = skylight_hat(x, column) * skylight_hat(y, row) * other.weight;
+                var counts = skylight_hat(x, column, radius) * skylight_hat(y, row, radius) * other.weight;
                 if row != y || column != x {
                     counts *= skylight_near(own, other);
                 }
@@ -187,12 +196,13 @@ fn skylight_other(x: u32, y: u32, slot: u32) -> vec3f {
     }
     var weight = 0.0;
     var sum = vec3f(0.0);
-    let right = min(x + SKYLIGHT_RADIUS, render_frame.camera.width - 1u);
-    let bottom = min(y + SKYLIGHT_RADIUS, render_frame.camera.height - 1u);
-    for (var row = spacing_first(y, 1u, SKYLIGHT_RADIUS, 0u); row <= bottom; row += 1u) {
-        for (var column = spacing_first(x, 1u, SKYLIGHT_RADIUS, 0u); column <= right; column += 1u) {
+    let radius = skylight_radius(render_frame.sky_rays, render_frame.ray_spacing);
+    let right = min(x + radius, render_frame.camera.width - 1u);
+    let bottom = min(y + radius, render_frame.camera.height - 1u);
+    for (var row = spacing_first(y, 1u, radius, 0u); row <= bottom; row += 1u) {
+        for (var column = spacing_first(x, 1u, radius, 0u); column <= right; column += 1u) {
             let other = row * render_frame.camera.width + column;
-            let hat = skylight_hat(x, column) * skylight_hat(y, row);
+            let hat = skylight_hat(x, column, radius) * skylight_hat(y, row, radius);
             let counts = hat * skylight_near(own, skylight_slot(other, slot));
             let its = skylight_unpack(skylight_packed(other, slot));
             var few = hat * SKYLIGHT_OWN * its.weight;
@@ -223,7 +233,9 @@ fn main_skylight(@builtin(global_invocation_id) id: vec3u) {
         if step == 0u {
             mean = skylight_mean(id.x, y, slot);
         } else {
-            mean = skylight_wide(id.x, y, slot, SKYLIGHT_STEP << (step - 1u));
+            // As far apart as the weights of a window reach, so that they add up to the same everywhere.
+            let reach = skylight_radius(render_frame.sky_rays, render_frame.ray_spacing) + 1u;
+            mean = skylight_wide(id.x, y, slot, reach << (step - 1u));
         }
         skylight_means[2u * index + slot] = mean;
     }

@@ -27,7 +27,7 @@ use downpour_trace::scatter::{
 };
 use downpour_trace::scene::{SceneView, scene_alpha, scene_disk, scene_softness};
 use downpour_trace::sky_light::SkyLight;
-use downpour_trace::skylight::{skylight_film, skylight_hat, skylight_lobe};
+use downpour_trace::skylight::{skylight_film, skylight_hat, skylight_lobe, skylight_radius};
 use downpour_trace::texture::{texture_taps, texture_wrap};
 use glam::{Affine3A, Vec2, Vec3};
 
@@ -281,9 +281,16 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "skylight_hat",
             &SKYLIGHT,
-            &[Below(4), Below(4)],
+            &[Below(4), Below(4), Made(|r| vec![3 + r[0] % 2])],
             Tol::exact("small whole numbers"),
-            |a| skylight_hat(a.u32(), a.u32()).words(),
+            |a| skylight_hat(a.u32(), a.u32(), a.u32()).words(),
+        ),
+        FunctionCase::new(
+            "skylight_radius",
+            &SKYLIGHT,
+            &[Below(7), Made(|r| vec![1 + r[0] % 3])],
+            Tol::exact("a choice of small whole numbers"),
+            |a| skylight_radius(a.u32(), a.u32()).words(),
         ),
     ]
 }

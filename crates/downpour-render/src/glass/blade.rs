@@ -68,7 +68,7 @@ pub fn glass_picture_blade_at(blade: &GlassPictureBlade, fraction: f32) -> Vec2 
     v / v.dot(v).max(1.0e-12).sqrt()
 }
 
-/// What a position of the pane shows of a blade that points in a direction of length 1: how far across the part the position is, -1 to
+/// The part of a blade, which points in a direction of length 1, at a position of the pane: how far across the part the position is, -1 to
 /// 1, and the part's diffuse reflectance, 0 where there is none.
 #[must_use]
 pub fn glass_picture_blade_part(blade: &GlassPictureBlade, direction: Vec2, position: Vec2) -> Vec2 {

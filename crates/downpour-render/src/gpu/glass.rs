@@ -26,7 +26,7 @@ pub struct GlassRenderer {
     kernel: ComputeKernel,
 }
 
-/// What stands before a pane of glass, on the device.
+/// The picture before a pane of glass, on the device.
 #[derive(Clone, Copy, Debug)]
 pub struct BehindGlass<'a> {
     /// The plate: radiance and distance of each pixel, rows from the top.

@@ -105,7 +105,7 @@ impl GlowPass<'_> {
             .collect()
     }
 
-    /// What glow adds to each pixel, in four numbers.
+    /// Radiance that glow adds to each pixel, in four numbers.
     #[must_use]
     pub fn target(&self) -> &wgpu::Buffer {
         &self.target

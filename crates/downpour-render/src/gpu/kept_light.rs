@@ -25,7 +25,7 @@ pub(super) struct KeptMeans {
     pub(super) are_all: bool,
 }
 
-/// What the kept light of a picture was found from, and where it is.
+/// Light that is kept from picture to picture, and everything that it was found from.
 #[derive(Clone, Debug)]
 pub struct KeptLight {
     /// The frame of its drops, with the number of its means.

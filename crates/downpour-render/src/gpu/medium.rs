@@ -30,19 +30,19 @@ pub struct MediumPass<'a> {
     pipeline: &'a MediumPipeline,
     open: (wgpu::BindGroup, [u32; 3]),
     light: (wgpu::BindGroup, [u32; 3]),
-    /// What takes means, in this order.
+    /// Kernels that take means, in this order.
     filters: Vec<(ComputeKernel, wgpu::BindGroup)>,
     pixels: [u32; 3],
     frame: wgpu::Buffer,
     phase: wgpu::Buffer,
     found: wgpu::Buffer,
-    /// What its light is found from, besides plate and lamps.
+    /// Everything that its light is found from, besides plate and lamps.
     of: MediumOf,
     /// True if the light is there already.
     is_known: bool,
 }
 
-/// What the light of unresolved rain before a plate is found from, besides the plate and its lamps.
+/// Everything that the light of unresolved rain before a plate is found from, besides the plate and its lamps.
 #[derive(Clone, Debug)]
 pub(super) struct MediumOf {
     medium: MediumFrame,
@@ -161,7 +161,7 @@ impl MediumPass<'_> {
         self.is_known = self.of.is_same(last);
     }
 
-    /// What its light is found from.
+    /// Everything that its light is found from.
     pub(super) fn of(&self) -> &MediumOf {
         &self.of
     }

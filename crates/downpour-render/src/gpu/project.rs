@@ -190,7 +190,7 @@ impl ProjectPass<'_> {
     }
 }
 
-/// What the kernels made, read back.
+/// Results of the kernels, read back.
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 #[derive(Debug)]

@@ -365,7 +365,7 @@ impl RainPass<'_> {
         self.medium.open()
     }
 
-    /// What is done before anything is lit or drawn, in stages whose dispatches write different buffers: drops that are on the device
+    /// Dispatches before anything is lit or drawn, in stages that write different buffers: drops that are on the device
     /// are put on the picture, streaks get their profiles, the tiles their lists, and the drops that are too small for a profile the
     /// light of their classes. After [`RainPass::environment`].
     #[must_use]
@@ -430,7 +430,7 @@ impl RainPass<'_> {
         self.medium.found()
     }
 
-    /// What the pixels show of the drops, after all else.
+    /// Drops in the pixels, after all else.
     #[must_use]
     pub fn drops(&self) -> Dispatch<'_> {
         let groups = [self.size[0].div_ceil(8), self.size[1].div_ceil(8), 1];

@@ -18,7 +18,7 @@ pub(super) struct SprayPipeline {
     blend: ComputeKernel,
 }
 
-/// What of a picture's rain its spray is seen with.
+/// Parts of a picture's rain that its spray is seen with.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SprayOf<'a> {
     /// The frame of the drops.

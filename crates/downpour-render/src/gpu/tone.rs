@@ -20,7 +20,7 @@ pub struct TonedLayers<'a> {
     pub plate: &'a wgpu::Buffer,
     /// Radiance of the rain, and the transmittance of what is behind it.
     pub rain: &'a wgpu::Buffer,
-    /// What glow adds.
+    /// Radiance that glow adds.
     pub glow: Option<&'a wgpu::Buffer>,
 }
 

@@ -185,7 +185,7 @@ fn lamps(eye: Vec3, lighting: &dyn Lighting) -> Vec<LayersLamp> {
     lamps.into_iter().map(|(_, lamp)| lamp).collect()
 }
 
-/// What a pixel's layers are looked up in.
+/// Inputs of the layers of a pixel.
 struct LayersView<'a> {
     frame: &'a LayersFrame,
     drops: &'a DropsView<'a>,
@@ -229,7 +229,7 @@ impl LayersView<'_> {
         self.layers_level(low, position) * (1.0 - part) + self.layers_level(low + 1, position) * part
     }
 
-    /// What a pixel shows of the layers before a scene so far away: radiance times opacity, and opacity.
+    /// The layers in a pixel before a scene so far away: radiance times opacity, and opacity.
     fn layers_pixel(&self, x: u32, y: u32, scene: f32) -> Vec4 {
         let (frame, camera) = (self.frame, &self.drops.frame.camera);
         let (wide, high) = (camera.right.dot(camera.right).sqrt(), camera.up.dot(camera.up).sqrt());

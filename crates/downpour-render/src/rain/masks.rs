@@ -284,7 +284,7 @@ impl DropMasks {
         self.project_mask([DIAMETERS as f32 + row.clamp(0.0, last), turned.clamp(0.0, above)])
     }
 
-    /// What the masks at a fractional row and elevation say of an outline.
+    /// The outline at a fractional row and elevation, from the masks.
     fn project_mask(&self, index: [f32; 2]) -> MaskLookup {
         let [row, _] = index;
         let (low, part) = (row as u32, row - row.floor());

@@ -207,8 +207,8 @@ fn streak_light_radius(size: Vec2) -> f32 {
     STREAK_SPOT_WIDTH * (area / STREAK_SPOTS as f32).sqrt()
 }
 
-/// How far directions of a patch go along an axis beside its lines across and along: in time, and by second differences; and how far away a
-/// lamp is looked for.
+/// Extent of the directions of a patch along an axis beside its lines across and along: in time, and by second differences; and the
+/// distance at which a lamp is looked for.
 fn streak_light_bound(ray: &StreakPatch, axis: Vec3, moved: Vec3, span: f32, reach: f32) -> f32 {
     let part = |way: Vec3| way.dot(axis).abs();
     let squares = part(ray.across.second) + part(ray.along.second) + part(ray.later.second) * (span * span);

@@ -48,7 +48,7 @@ pub fn tone_edge_weight(color: Vec3, dark: Vec3, behind: Vec3, bright: Vec3, cov
     above * differs * is_even * covered.max(clips)
 }
 
-/// What a pair of neighbors takes from a pixel, times the pair's weight among pairs, and that weight. `toned` is the pixel's color through
+/// Radiance that a pair of neighbors takes from a pixel, times the pair's weight among pairs, and that weight. `toned` is the pixel's color through
 /// the curve; the others are exposed colors from 0 to `TONE_MAX_CHANNEL`: of the pixel, its dark neighbor and the pixel behind that one, its
 /// bright neighbor and the pixel beyond that one.
 #[must_use]

@@ -29,7 +29,7 @@ const UNEVEN: f64 = 0.35;
 const OF_POINT: u32 = 8317;
 const OF_DROP: u32 = 8329;
 
-/// What a drop is among.
+/// Obstacles and wind that a drop falls among.
 #[derive(Clone, Copy)]
 pub(super) struct Query<'a> {
     pub(super) obstacles: &'a Obstacles<'a>,

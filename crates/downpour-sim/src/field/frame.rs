@@ -1,4 +1,4 @@
-//! What a GPU needs to find the drops of a picture. The structs have the layout of those in `shaders/wgsl/sim/field.wgsl` and
+//! Uniforms and tables with which a GPU finds the drops of a picture. The structs have the layout of those in `shaders/wgsl/sim/field.wgsl` and
 //! `shaders/wgsl/sim/shelter.wgsl`.
 
 use bytemuck::{Pod, Zeroable};

@@ -120,7 +120,7 @@ const SIXTEENTH_S: f64 = BOUNCE_SLICE as f64;
 /// Sixteenths of a second from one cut of a path to the sky to the next.
 const SIXTEENTHS_OF_CUT: i64 = (CUT_S / SIXTEENTH_S) as i64;
 
-/// Where drops are listed, and counted.
+/// Buffers in which drops are listed and counted.
 #[derive(Clone, Copy)]
 struct ListOnGpu<'a> {
     drops: &'a wgpu::Buffer,

@@ -126,7 +126,7 @@ pub struct GpuSimulation {
     /// Kernels by the presence of a wind field and of a map.
     kernels: [Option<Kernels>; 4],
     lists: StepListKernels,
-    /// What is written and bound in each step.
+    /// Uniforms and bindings of each step.
     pool: BufferPool,
     /// Bytes that were written.
     written: AtomicU64,

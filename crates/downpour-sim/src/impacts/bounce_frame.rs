@@ -1,4 +1,4 @@
-//! What a GPU needs to find droplets that rebound. The structs have the layout of those in `shaders/wgsl/sim/bounce.wgsl`, whose twin is
+//! Uniforms and tables with which a GPU finds droplets that rebound. The structs have the layout of those in `shaders/wgsl/sim/bounce.wgsl`, whose twin is
 //! `bounced`.
 //!
 //! A drop is given by its position at the end of the exposure, as if nothing had stopped it. There it is close to its droplet, since

@@ -244,7 +244,7 @@ impl Bounce {
     }
 }
 
-/// Where the droplets of a class that a picture shows come from.
+/// Places from which the droplets of a class in a picture come.
 #[derive(Clone, Copy)]
 pub(super) struct Origins {
     pub(super) bounds: Bounds,

@@ -14,7 +14,7 @@ const CELL_M: f64 = 2.0;
 /// Maximum number of cells along an axis of a box: larger boxes have cells of twice the edge, or of four times.
 const MAX_CELLS: f64 = 32.0;
 
-/// What rounding may put aside a surface, m.
+/// Distance by which rounding may put a point beside a surface, m.
 const SLACK_M: f64 = 0.01;
 
 /// Bounds of the obstacles in each cell of lattices, found when they are asked for.

@@ -1,4 +1,4 @@
-//! What a GPU needs to list the crowns of the impacts of a slice of time; see `shaders/wgsl/sim/splash_find.wgsl`.
+//! Uniforms with which a GPU lists the crowns of the impacts of a slice of time; see `shaders/wgsl/sim/splash_find.wgsl`.
 
 use downpour_shaders::sim::splash::{SPLASH_MAX_S, SPLASH_MAX_SIZE};
 use glam::{DVec3, Vec3};

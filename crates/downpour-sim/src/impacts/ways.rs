@@ -75,7 +75,7 @@ impl Ways {
         })
     }
 
-    /// Where a drop first comes down through a height, m, with its velocity and the time.
+    /// The place at which a drop first comes down through a height, m, with its velocity and the time.
     pub(super) fn first_through(
         &self,
         height: f64,

@@ -208,12 +208,11 @@ impl SceneView<'_> {
         plan.replaced = free && !kept && plan.mirrors > 0;
         plan
     }
+}
 
-    /// Light that falls on the last surface of a path, over pi: the mean of what its surfaces gave, thrown back and forth,
-    /// and a part of the open sky's.
-    pub(super) fn path_ambient(&self, surface: &Surface, given: Vec3) -> Vec3 {
-        let albedo = (surface.diffuse + surface.normal_reflectance).min(Vec3::ONE);
-        let sky = self.data.sky_irradiance(surface.normal) * (surface.occlusion * (1.0 - PATH_ENCLOSED));
-        (given * PATH_ENCLOSED + sky) / (Vec3::ONE - albedo * PATH_ENCLOSED)
-    }
+/// Light that falls on the last surface of a path, over pi: the mean of what its surfaces gave, thrown back and forth. A path that has met
+/// so many is enclosed by them, and sees no open sky.
+pub(super) fn path_ambient(surface: &Surface, given: Vec3) -> Vec3 {
+    let albedo = (surface.diffuse + surface.normal_reflectance).min(Vec3::ONE);
+    given * PATH_ENCLOSED / (Vec3::ONE - albedo * PATH_ENCLOSED)
 }

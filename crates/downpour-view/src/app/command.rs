@@ -104,7 +104,7 @@ impl Command {
         Self::Help,
     ];
 
-    /// What it does, for menus.
+    /// Its name in menus.
     #[must_use]
     pub fn label(self) -> &'static str {
         match self {

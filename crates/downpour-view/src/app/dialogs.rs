@@ -26,7 +26,7 @@ pub enum Dialog {
     ChangedOnDisk,
     /// An earlier window did not save.
     Recover(Recovery),
-    /// What to render.
+    /// The picture or clip to render.
     Render(JobSettings),
 }
 

@@ -27,7 +27,7 @@ const MIN_EDGE_M: f64 = 0.1;
 /// Points by which a strength is dragged until it is multiplied by e.
 const STRENGTH_POINTS: f64 = 120.0;
 
-/// What a handle changes.
+/// The value that a handle changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HandleKind {
     /// Place, along x, y or z.
@@ -47,11 +47,11 @@ pub enum HandleKind {
 /// A handle in the window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Handle {
-    /// What it changes.
+    /// The value that it changes.
     pub kind: HandleKind,
-    /// Where it is, in points.
+    /// Its position, in points.
     pub at: Pos2,
-    /// Where its object is, in points.
+    /// Position of its object, in points.
     pub from: Pos2,
 }
 
@@ -63,7 +63,7 @@ pub(super) struct Drag {
     object: Object,
     /// Place of each object that moves, as it was.
     moved: Vec<(KeyPath, DVec3)>,
-    /// Where the drag began, in points.
+    /// Position at which the drag began, in points.
     begin: Pos2,
     view: PictureView,
     anchor: DVec3,
@@ -246,7 +246,7 @@ impl App {
         }
     }
 
-    /// Where a handle has to be dragged to, in points: by meters along an axis, by a factor of radius, size or strength, by degrees of a
+    /// Position to which a handle has to be dragged, in points: by meters along an axis, by a factor of radius, size or strength, by degrees of a
     /// direction about the vertical.
     #[must_use]
     pub fn dragged_place(&self, handle: &Handle, by: f64) -> Option<Pos2> {

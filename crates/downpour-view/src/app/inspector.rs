@@ -26,7 +26,7 @@ enum Edit {
     Refused(String),
 }
 
-/// What the panel needs of the window.
+/// Parts of the window that the panel needs.
 struct Panel<'a> {
     time_s: f64,
     filter: &'a str,

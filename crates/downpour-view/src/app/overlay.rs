@@ -1,4 +1,4 @@
-//! What is drawn over the picture: models of objects, handles, the wind on a slice, tracers, the camera's path.
+//! Lines over the picture: models of objects, handles, the wind on a slice, tracers, the camera's path.
 
 use downpour::math::ops::f64 as ops;
 use downpour::weather::Weather;
@@ -76,7 +76,7 @@ impl App {
         DVec2::new(f64::from(offset.x / size.x), f64::from(offset.y / size.y))
     }
 
-    /// Where things without a place are drawn: ahead of the eye, above the ground.
+    /// Position of things without a place: ahead of the eye, above the ground.
     pub(super) fn anchor(&self, view: &PictureView) -> DVec3 {
         view.eye + view.forward * ANCHOR_M + view.up * (view.height_at(ANCHOR_M) * 0.22)
     }

@@ -8,7 +8,7 @@ use super::App;
 use crate::document::Document;
 use crate::theme::QUIET;
 
-/// What a file is chosen for.
+/// Purpose of a file that is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// A weather file or a model is opened.

@@ -44,7 +44,7 @@ pub(super) fn add_entry(
     .ok_or_else(|| absent(list))
 }
 
-/// What stands before an entry that is added at the end of an array: the comment of the entry before, and a new line as it has.
+/// The text before an entry that is added at the end of an array: the comment of the entry before, and a new line as it has.
 fn before_next(array: &mut toml_edit::Array) -> String {
     let mut comment = String::new();
     if array.trailing_comma() {
@@ -164,7 +164,7 @@ pub(super) fn set_entry_name(
     .ok_or_else(|| absent(&list.entry(index)))
 }
 
-/// What stands before an entry, with the comment that names it in place of an older one. An entry within an array begins a line.
+/// The text before an entry, with the comment that names it in place of an older one. An entry within an array begins a line.
 fn named(prefix: &str, is_inline: bool, name: &str) -> String {
     let mut lines: Vec<&str> =
         prefix.split('\n').filter(|line| !line.trim().starts_with(NAME_MARK)).collect();

@@ -4,7 +4,7 @@
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DocumentError {
-    /// What the parser says about the text.
+    /// Message of the parser about the text.
     #[error("{0}")]
     Refused(String),
     /// No such key or entry.

@@ -20,7 +20,7 @@ const REFINED_MS: f64 = 1500.0;
 /// Part of the rest so far that a picture may take beyond that: who has looked for a minute waits for a few seconds.
 const REFINED_PART: f64 = 0.25;
 
-/// What is known of pictures while nothing changes.
+/// Sizes and times of pictures while nothing changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rest {
     /// Scale of the newest picture.

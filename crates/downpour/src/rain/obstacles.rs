@@ -1,4 +1,4 @@
-//! What stops rain in a host application.
+//! Obstacles that stop rain in a host application.
 
 use downpour_math::in_range;
 use downpour_shaders::render::scene::SCENE_MASKED;

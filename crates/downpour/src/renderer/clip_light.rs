@@ -61,7 +61,7 @@ impl ClipLight {
 }
 
 impl Renderer {
-    /// What of the plate of a frame stays, and with which frames its light is averaged.
+    /// Parts of a frame's plate that stay, and frames with which its light is averaged.
     pub(super) fn plate_use(&self, frame_scene: &FrameScene, time_s: f64) -> PlateUse {
         let window = |light: ClipLight| LightWindow {
             time_s,

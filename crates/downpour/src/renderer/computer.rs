@@ -126,7 +126,7 @@ pub struct Computer {
 pub(super) struct Drawer {
     computer: Computer,
     falls_back: bool,
-    /// What the last picture on the CPU has left, if it was to be kept.
+    /// State that the last picture on the CPU has left, if it was to be kept.
     kept: RefCell<KeptScene>,
     #[cfg(feature = "wgpu")]
     on_gpu: Option<OnGpu>,

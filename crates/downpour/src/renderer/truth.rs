@@ -56,7 +56,7 @@ impl Truth {
     }
 }
 
-/// What the truth about a frame is found from.
+/// Everything that the truth about a frame is found from.
 #[derive(Debug)]
 pub(super) struct TruthOf {
     pub(super) frame_scene: FrameScene,

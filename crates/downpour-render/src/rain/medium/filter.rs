@@ -10,7 +10,7 @@ use super::spread::medium_spread_alike;
 use crate::light::light_weight;
 use crate::spacing::window;
 
-/// What was found before a pixel, or sums of it.
+/// Light and optical depth before a pixel, or sums of them.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Rows {
     /// Light of lamps if nothing hid them, below 0 where others look for it; optical depth, or in a sum the weight.
@@ -28,7 +28,7 @@ pub(super) struct Filter<'a> {
 }
 
 impl Filter<'_> {
-    /// What was found before a pixel.
+    /// Light and optical depth before a pixel.
     fn medium_filter_rows(&self, index: usize) -> Rows {
         let at = self.light.grid_rows() + 2 * index;
         Rows { whole: self.found[at].into(), seen: self.found[at + 1].into() }
@@ -39,7 +39,7 @@ impl Filter<'_> {
         medium_spread_alike(self.clean[index][3], self.clean[other][3])
     }
 
-    /// What was found before a pixel, or by the pixels around it that have looked for it.
+    /// Light and optical depth before a pixel, or those of the pixels around it that have looked for them.
     pub(super) fn medium_filter_own(&self, x: u32, y: u32) -> Rows {
         let index = (y * self.light.camera.width + x) as usize;
         let own = self.medium_filter_rows(index);

@@ -1,4 +1,4 @@
-//! How drops and fog scatter light. Twin of `shaders/wgsl/render/medium_phase.wgsl`.
+//! Phase functions of drops and fog. Twin of `shaders/wgsl/render/medium_phase.wgsl`.
 
 use std::f32::consts::PI;
 

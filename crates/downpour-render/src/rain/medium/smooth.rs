@@ -8,7 +8,7 @@ use super::filter::{Filter, medium_filter_packed};
 use crate::light::light_weight;
 use crate::spacing::window;
 
-/// What was found before the pixels of a picture, and the part of their light that the window of each has seen, with 1 if there is light.
+/// Light and optical depth before the pixels of a picture, and the part of their light that the window of each has seen, with 1 if there is light.
 #[derive(Clone, Debug)]
 pub(super) struct Smooth<'a> {
     filter: &'a Filter<'a>,
