@@ -18,6 +18,11 @@ shared_constants! {
         BVH_NO_CHILD: u32 = 4294967295;
         /// Larger than every distance.
         BVH_FAR: f32 = 3.0e38;
+        /// Factor of a distance, and what is added to it, up to which a box counts as entered before it: rounding may swap the two by a few units
+        /// in the last place.
+        BVH_REACH: f32 = 1.000001;
+        /// See [`BVH_REACH`].
+        BVH_REACH_SLACK: f32 = 1.0e-7;
         /// Barycentric slack of a triangle: a ray through a shared edge must not slip between two of them.
         BVH_EDGE_SLACK: f32 = 1.0e-6;
     }

@@ -2,8 +2,8 @@
 //!
 //! The library merges neighboring boxes from the leaves up (D. Meister, J. Bittner, "Parallel locally-ordered clustering for bounding
 //! volume hierarchy construction", 2018) and then moves subtrees to where they cost rays less (the same, "Parallel reinsertion for
-//! bounding volume hierarchy optimization", 2018). Then nodes take in their largest children until they have four. Among walls, wires and leaves of trees a ray meets a third of the boxes that it meets
-//! in a tree that is split from the root down by the surface area heuristic.
+//! bounding volume hierarchy optimization", 2018). Among walls, wires and leaves of trees a ray meets a third of the boxes that it meets
+//! in a tree that is split from the root down by the surface area heuristic. Last, nodes take in their largest children until they have four.
 
 use downpour_math::vector::sub;
 use downpour_shaders::bvh::{BVH_LEAF, BVH_LEAF_SHIFT, BVH_NO_CHILD, BVH_STACK};
@@ -16,7 +16,7 @@ use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
 use crate::bounds::Bounds;
-use crate::{Bvh, BvhNode, BvhTriangle, bvh_bounds, bvh_leaf};
+use crate::{Bvh, BvhNode, BvhTriangle, bvh_leaf};
 
 /// Triangle count up to which a node is a leaf.
 pub(crate) const LEAF: usize = 4;
@@ -34,7 +34,7 @@ const NODE_COST: f32 = 1.0;
 /// Coordinates beyond this are scaled for the library, whose areas must be finite.
 const LARGE: f32 = 1.0e15;
 /// Level from which on a subtree that is too deep for the stack of the walk is divided anew, into quarters.
-const HALVED_FROM: usize = 8;
+const QUARTERED_FROM: usize = 8;
 /// Levels of nodes, at most: each leaves three children on the stack of the walk.
 const LEVELS: usize = (BVH_STACK as usize - 1) / 3;
 
@@ -62,8 +62,8 @@ impl Bvh {
             for k in 0..4 {
                 let child = nodes[at].child[k];
                 if child < BVH_LEAF {
-                    let [low, high] = bvh_bounds(&nodes[child as usize..]).unwrap_or_default();
-                    nodes[at].set_bounds(k, &Bounds { low, high });
+                    let bounds = nodes[child as usize].whole();
+                    nodes[at].set_bounds(k, &bounds);
                 } else if child != BVH_NO_CHILD {
                     let of_leaf = order[bvh_leaf(child)].iter().flat_map(|&index| corners[index as usize]);
                     nodes[at].set_bounds(k, &of_leaf.fold(Bounds::NONE, Bounds::with));
@@ -146,8 +146,8 @@ impl Layout {
                 let node = &tree.nodes[child.node];
                 self.nodes[at].child[k] = if node.is_leaf() {
                     self.leaf(of_leaf(tree, node).iter().copied())
-                } else if level >= HALVED_FROM && level + wide[child.wide].levels > LEVELS {
-                    self.halve(&mut triangles(tree, child.node), boxes)
+                } else if level >= QUARTERED_FROM && level + wide[child.wide].levels > LEVELS {
+                    self.quarter(&mut triangles(tree, child.node), boxes)
                 } else {
                     let place = self.node();
                     stack.push((child.wide, place as usize, level + 1));
@@ -158,7 +158,7 @@ impl Layout {
     }
 
     /// Lays out triangles, halved along their longest axis, and the halves again, until they fit a leaf.
-    fn halve(&mut self, triangles: &mut [u32], boxes: &[Aabb]) -> u32 {
+    fn quarter(&mut self, triangles: &mut [u32], boxes: &[Aabb]) -> u32 {
         if triangles.len() <= LEAF {
             return self.leaf(triangles.iter().copied());
         }
@@ -166,7 +166,7 @@ impl Layout {
         let mut k = 0;
         for half in halves(triangles, boxes) {
             for quarter in halves(half, boxes) {
-                self.nodes[place as usize].child[k] = self.halve(quarter, boxes);
+                self.nodes[place as usize].child[k] = self.quarter(quarter, boxes);
                 k += 1;
             }
         }

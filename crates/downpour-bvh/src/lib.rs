@@ -13,7 +13,9 @@ use std::ops::Range;
 
 use bounds::Bounds;
 use downpour_math::vector::{cross, dot, sub};
-use downpour_shaders::bvh::{BVH_FAR, BVH_LEAF, BVH_LEAF_SHIFT, BVH_NO_CHILD, BVH_STACK};
+use downpour_shaders::bvh::{
+    BVH_FAR, BVH_LEAF, BVH_LEAF_SHIFT, BVH_NO_CHILD, BVH_REACH, BVH_REACH_SLACK, BVH_STACK,
+};
 use glam::{BVec4, Vec4};
 
 /// Barycentric slack: a ray through a shared edge must not slip between the two triangles.
@@ -218,9 +220,9 @@ pub fn bvh_order(enters: [f32; 4], child: [u32; 4]) -> BvhOrder {
 /// Corners, the lower first, of the box around all triangles; `None` without any.
 #[must_use]
 pub fn bvh_bounds(nodes: &[BvhNode]) -> Option<[[f32; 3]; 2]> {
-    let root = nodes.first()?;
-    let all = (0..4).filter(|&k| root.child[k] != BVH_NO_CHILD).map(|k| root.bounds(k));
-    all.reduce(Bounds::union).map(|all| [all.low, all.high])
+    let root = nodes.first().filter(|root| root.child[0] != BVH_NO_CHILD)?;
+    let Bounds { low, high } = root.whole();
+    Some([low, high])
 }
 
 impl BvhNode {
@@ -234,6 +236,12 @@ impl BvhNode {
         high_z: [0.0; 4],
         child: [BVH_NO_CHILD; 4],
     };
+
+    /// The box around all children.
+    fn whole(&self) -> Bounds {
+        let children = (0..4).filter(|&k| self.child[k] != BVH_NO_CHILD);
+        children.fold(Bounds::NONE, |all, k| all.union(self.bounds(k)))
+    }
 
     /// The box of a child.
     fn bounds(&self, k: usize) -> Bounds {
@@ -309,7 +317,7 @@ pub fn bvh_enter(node: &BvhNode, origin: [f32; 3], inverse: [f32; 3], nearest: f
     let enter = near_x.max(near_y).max(near_z.max(Vec4::splat(nearest)));
     let leave = far_x.min(far_y).min(far_z.min(Vec4::splat(limit)));
     let is_child = BVec4::from_array(node.child.map(|child| child != BVH_NO_CHILD));
-    let met = enter.cmple(leave * 1.000_001 + 1.0e-7);
+    let met = enter.cmple(leave * BVH_REACH + BVH_REACH_SLACK);
     std::array::from_fn(|k| if met.test(k) && is_child.test(k) { enter[k] } else { BVH_FAR })
 }
 
@@ -317,7 +325,7 @@ pub fn bvh_enter(node: &BvhNode, origin: [f32; 3], inverse: [f32; 3], nearest: f
 #[inline(always)]
 #[must_use]
 pub fn bvh_is_before(enter: f32, distance: f32) -> bool {
-    enter <= distance * 1.000_001 + 1.0e-7
+    enter <= distance * BVH_REACH + BVH_REACH_SLACK
 }
 
 /// Distance, and barycentric weights of the second and third corner, of the ray's intersection with the plane of
@@ -516,8 +524,7 @@ mod tests {
             for (k, &child) in node.child.iter().enumerate().filter(|child| *child.1 < BVH_LEAF) {
                 assert!(child as usize > at);
                 parents[child as usize] += 1;
-                let [low, high] = bvh_bounds(&bvh.nodes[child as usize..]).unwrap();
-                assert!(node.bounds(k) == Bounds { low, high });
+                assert!(node.bounds(k) == bvh.nodes[child as usize].whole());
             }
         }
         assert_eq!(parents[0], 0);

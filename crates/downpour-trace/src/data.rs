@@ -160,7 +160,13 @@ impl SceneData {
     /// Lower and upper corner of the bounding box, meters.
     #[must_use]
     pub fn bounds(&self) -> (Vec3, Vec3) {
-        bvh_bounds(&self.nodes).map_or((Vec3::ZERO, Vec3::ZERO), |[low, high]| (low.into(), high.into()))
+        self.bounding_box().map_or((Vec3::ZERO, Vec3::ZERO), |[low, high]| (low, high))
+    }
+
+    /// Corners of the bounding box, the lower first, meters; `None` without triangles.
+    #[must_use]
+    pub fn bounding_box(&self) -> Option<[Vec3; 2]> {
+        bvh_bounds(&self.nodes).map(|corners| corners.map(Vec3::from))
     }
 
     /// Reads light `index`.

@@ -5,7 +5,6 @@ mod obstacles;
 mod settings;
 mod textures;
 
-use downpour_bvh::bvh_bounds;
 use downpour_drop::air::Air;
 use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution};
 use downpour_drop::oscillation::{Amplitudes, Fluids};
@@ -30,7 +29,7 @@ use downpour_trace::frame_scene::{MAX_LIGHTS, view_of};
 use downpour_trace::gpu::SceneOnGpu;
 use downpour_trace::scene::SceneView;
 use downpour_weather::drop_exposure_s;
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use crate::shower::{drops_among, fall_speed, looking, splashes, spray};
 use obstacles::scene_of;
@@ -273,12 +272,11 @@ impl Rain {
         let frame = frame.with_ray_spacing(self.settings.ray_spacing);
         let lighting_on_gpu = self.scene_on_gpu.lighting_of(&self.pool, &frame, &self.scene)?;
         let [_, nodes, triangles, corners, table, texels] = &lighting_on_gpu.buffers;
-        let bounds = bvh_bounds(&self.scene.nodes).filter(|_| self.has_obstacles);
         let obstacles = ObstaclesOnGpu {
             nodes,
             triangles,
             holes: self.has_holes.then_some(HolesOnGpu { corners, table, texels }),
-            bounds: bounds.map(|corners| corners.map(Vec3::from)),
+            bounds: self.scene.bounding_box().filter(|_| self.has_obstacles),
             origin: DVec3::ZERO,
         };
         let (splashes, bounce) = self.of_impacts(&seen, view.time_s)?;

@@ -53,7 +53,7 @@ fn bvh_enter(node: BvhNode, origin: vec3f, inverse: vec3f, nearest: f32, limit: 
     let near = max(max(min(low_x, high_x), min(low_y, high_y)), max(min(low_z, high_z), vec4f(nearest)));
     let far = min(min(max(low_x, high_x), max(low_y, high_y)), min(max(low_z, high_z), vec4f(limit)));
     // As bvh_is_before.
-    let met = near <= far * 1.000001 + 1.0e-7;
+    let met = near <= far * BVH_REACH + BVH_REACH_SLACK;
     return select(vec4f(BVH_FAR), near, met & (node.child != vec4u(BVH_NO_CHILD)));
 }
 
@@ -74,7 +74,7 @@ fn bvh_order(enters: vec4f, child: vec4u) -> BvhOrder {
 
 // True if a ray enters a box before a distance: rounding may swap the two by a few units in the last place.
 fn bvh_is_before(enter: f32, distance: f32) -> bool {
-    return enter <= distance * 1.000001 + 1.0e-7;
+    return enter <= distance * BVH_REACH + BVH_REACH_SLACK;
 }
 
 // Distance, and barycentric weights of the second and third corner, of the ray's intersection with the plane of

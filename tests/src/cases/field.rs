@@ -2,7 +2,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use downpour_bvh::bvh_bounds;
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_drop::splash::{FILM_M, SplashLaw};
 use downpour_gpu::{BufferPool, Gpu, GpuError};
@@ -291,7 +290,7 @@ pub(super) fn obstacles_on<'a>(
     origin: DVec3,
 ) -> ObstaclesOnGpu<'a> {
     let [_, nodes, triangles, corners, table, texels] = &lighting.buffers;
-    let bounds = bvh_bounds(&scene.nodes).map(|corners| corners.map(Vec3::from));
+    let bounds = scene.bounding_box();
     let holes = has_holes.then_some(HolesOnGpu { corners, table, texels });
     ObstaclesOnGpu { nodes, triangles, holes, bounds, origin }
 }

@@ -1,6 +1,5 @@
 //! Drops of a picture on a GPU: those of a list, or those that the device finds in a rain.
 
-use downpour_bvh::bvh_bounds;
 use downpour_gpu::{BufferSource, Dispatch, Gpu, GpuError, Readback, ReadbackPool, wgpu};
 use downpour_render::gpu::LightingOnGpu;
 use downpour_sim::field::{EyeDrop, FallingDrop, RainField};
@@ -8,7 +7,7 @@ use downpour_sim::gpu::{
     DropListOnGpu, FieldOnGpu, FieldPass, FieldPipeline, FieldSearch, GpuSimulation, HolesOnGpu,
     ObstaclesOnGpu, StepListPass, StepPicture,
 };
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::GpuPictureError;
@@ -96,7 +95,7 @@ impl FieldDrops<'_> {
             nodes,
             triangles,
             holes: Some(HolesOnGpu { corners, table, texels }),
-            bounds: bvh_bounds(&scene.nodes).map(|corners| corners.map(Vec3::from)),
+            bounds: scene.bounding_box(),
             origin: self.origin,
         };
         Ok(pipeline.prepare(buffers, (self.field, self.on_gpu), &obstacles, &self.search)?)

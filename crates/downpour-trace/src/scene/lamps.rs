@@ -260,7 +260,7 @@ impl SceneView<'_> {
             let mut arrival = self.scene_arrival(&lamp, surface, if is_area { 0.0 } else { standoff }, under);
             // The ray ends before the surface that shines.
             arrival.distance -= if is_area { 4.0 * self.frame.nearest } else { 0.0 };
-            let nothing = SceneShare {
+            let mut share = SceneShare {
                 arrival,
                 lit: Vec3::ZERO,
                 glow: Vec3::ZERO,
@@ -269,24 +269,23 @@ impl SceneView<'_> {
                 is_area,
             };
             if light_weight(arrival.irradiance) <= 0.0 {
-                return nothing;
+                return share;
             }
-            let soft = match footprint {
+            share.soft = match footprint {
                 Some(_) if is_area => 1.0,
                 Some(footprint) => scene_softness(arrival.distance, arrival.spread, footprint),
                 None => 0.0,
             };
             // The part that is told apart, with the facet's normal in place of the relief's.
-            let mut share = SceneShare { soft, ..nothing };
             let mut bare = *surface;
-            if soft > 0.0 {
-                share.relief = self.scene_glow(surface, view, &arrival, out) * soft;
+            if share.soft > 0.0 {
+                share.relief = self.scene_glow(surface, view, &arrival, out) * share.soft;
                 share.glow = share.relief;
                 if !is_area {
                     let level = Surface { normal: surface.facet, ..*surface };
-                    share.glow = self.scene_glow(&level, view, &arrival, out) * soft;
+                    share.glow = self.scene_glow(&level, view, &arrival, out) * share.soft;
                 }
-                bare.diffuse *= 1.0 - soft;
+                bare.diffuse *= 1.0 - share.soft;
             }
             if !(is_first && is_area) {
                 let seen = glossy && lamp.kind == SCENE_LIGHT_BODY;

@@ -12,7 +12,7 @@ mod device;
 
 use std::sync::Arc;
 
-use downpour_bvh::{BvhNode, BvhTriangle, bvh_bounds};
+use downpour_bvh::{BvhNode, BvhTriangle};
 use downpour_drop::distribution::DropSizeDistribution;
 use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_sim::collision::{CollisionMap, CollisionOptions};
@@ -532,14 +532,14 @@ impl Stepped {
         views: &[View],
         wind: Vec3,
     ) -> Result<Option<CollisionOptions>, ShowerError> {
-        let Some([lowest, highest]) = bvh_bounds(&frame_scene.data.nodes) else { return Ok(None) };
+        let Some([lowest, highest]) = frame_scene.data.bounding_box() else { return Ok(None) };
         let each = views.iter().map(|view| self.reached(frame_scene, view));
         let (low, high) = each
             .reduce(|(low, high), (a, b)| (low.min(a), high.max(b)))
             .unwrap_or((DVec3::ZERO, DVec3::ZERO));
         // A meter more: drops that are on their way into the picture are above it.
-        let low = (low.as_vec3() - 1.0).max(Vec3::from(lowest)) - 0.1;
-        let high = (high.as_vec3() + 1.0).min(Vec3::from(highest)) + 0.1;
+        let low = (low.as_vec3() - 1.0).max(lowest) - 0.1;
+        let high = (high.as_vec3() + 1.0).min(highest) + 0.1;
         if low.cmpge(high).any() {
             return Ok(None);
         }
