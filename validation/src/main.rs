@@ -2,8 +2,6 @@
 
 mod figures;
 mod quantity;
-#[path = "../../xtask/src/run.rs"]
-mod run;
 mod truth;
 
 use std::process::ExitCode;

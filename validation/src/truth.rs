@@ -27,11 +27,11 @@ use std::path::Path;
 
 use downpour_drop::DropShape;
 
-use crate::run;
 use cases::Case;
 use mitsuba::Mitsuba;
 pub(crate) use options::Options;
 use report::{Outcome, Report};
+use xtask::run;
 
 /// Renders every case twice, compares, writes the report, and lists the cases above the aim.
 pub(crate) fn run(options: &Options) -> Result<(), String> {

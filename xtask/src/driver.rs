@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::Duration;
 
-use crate::run::command;
+use xtask::run::{command, root};
 
 /// Debian's packages with a loader and a software driver.
 const PACKAGES: [&str; 2] = ["libvulkan1", "mesa-vulkan-drivers"];
@@ -127,7 +127,7 @@ fn is_locked(said: &str) -> bool {
 
 /// A run-time folder, without which Mesa complains; it needs none of the user's.
 pub(crate) fn runtime() -> Result<String, String> {
-    let folder = crate::run::root().join("target/runtime");
+    let folder = root().join("target/runtime");
     std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     Ok(folder.display().to_string())
 }

@@ -1,6 +1,6 @@
 //! Golden images in `tests/goldens`: small masks of the CPU twins, and small pictures of every kind that the command makes.
 
-use crate::run;
+use xtask::run;
 
 /// The tests that hold them.
 const TESTS: [[&str; 2]; 2] = [["downpour-tests", "golden"], ["downpour-cli", "goldens"]];

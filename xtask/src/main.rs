@@ -1,16 +1,14 @@
 //! Tasks of the workspace. `cargo xtask` without a task lists them.
 
-mod atlas;
 mod checks;
 mod driver;
 mod goldens;
-mod masks;
 mod mutants;
-mod run;
-mod scenes;
 mod shaders;
 
 use std::process::ExitCode;
+
+use xtask::run;
 
 const USAGE: &str = "\
 cargo xtask test [--all]      run every test; makes sure of a Vulkan driver first; --all: the long sweeps too
@@ -38,19 +36,14 @@ fn main() -> ExitCode {
         ["test", "--all"] => checks::test(true),
         ["ci"] => checks::lint().and_then(|()| checks::test(true)),
         ["lint"] => checks::lint(),
-        ["masks"] => masks::write(),
-        ["masks", "--check"] => masks::check(),
-        ["atlas", rest @ ..] => atlas::run(rest),
-        ["scenes"] => scenes::write(),
-        ["scenes", "--check"] => scenes::check(),
-        ["scenes", "skies", rest @ ..] => scenes::skies(rest),
+        ["masks" | "atlas" | "scenes", ..] => program("downpour-assets", &words),
         ["goldens"] => goldens::compare(),
         ["goldens", "--bless"] => goldens::bless(),
         ["mutants", rest @ ..] => mutants::try_all(rest),
         ["mean-errors"] => mutants::mean_errors(),
         ["shaders"] => shaders::write("target/shaders"),
         ["shaders", folder] => shaders::write(folder),
-        ["truth" | "figures", ..] => validate(&words),
+        ["truth" | "figures", ..] => program("downpour-validation", &words),
         ["bench"] => checks::bench(),
         [] => {
             println!("{USAGE}");
@@ -67,7 +60,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// A task of the crate `downpour-validation`.
-fn validate(words: &[&str]) -> Result<(), String> {
-    run::cargo(&[&["run", "--quiet", "--locked", "-p", "downpour-validation", "--"], words].concat(), &[])
+/// A task of another crate. This one is small, so that tests and lints start at once.
+fn program(package: &str, words: &[&str]) -> Result<(), String> {
+    run::cargo(&[&["run", "--quiet", "--locked", "-p", package, "--"], words].concat(), &[])
 }

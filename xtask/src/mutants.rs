@@ -1,6 +1,8 @@
 //! Programs of `downpour-tests`: mutants of the shaders, and the limits of mean errors.
 
-use crate::{driver, run};
+use xtask::run;
+
+use crate::driver;
 
 /// The sample that every run of the tests tries, of functions with a case: seconds.
 const SAMPLE: [&str; 8] = ["--own", "--sample", "40", "--seed", "1", "--least", "95", "--report"];
@@ -33,7 +35,12 @@ pub(crate) fn try_sample() -> Result<(), String> {
 }
 
 fn program(name: &str, arguments: &[&str]) -> Result<(), String> {
-    let runtime = crate::driver::runtime()?;
-    let cargo = ["run", "--quiet", "--locked", "-p", "downpour-tests", "--all-features", "--bin", name, "--"];
-    run::cargo(&[&cargo[..], arguments].concat(), &[("XDG_RUNTIME_DIR", &runtime)])
+    // With the tests of its package, of the whole workspace: the features are those of `cargo xtask test`, and nothing is built twice.
+    run::cargo(&["test", "--workspace", "--all-features", "--locked", "--no-run", "--test", "parity"], &[])?;
+    let program = run::built("debug", name);
+    let status = run::command(&program.display().to_string(), arguments)
+        .env("XDG_RUNTIME_DIR", driver::runtime()?)
+        .status()
+        .map_err(|error| format!("{}: {error}", program.display()))?;
+    if status.success() { Ok(()) } else { Err(format!("{name} {} failed", arguments.join(" "))) }
 }

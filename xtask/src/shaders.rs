@@ -1,6 +1,6 @@
 //! The complete text of every kernel, for tools that take WGSL files.
 
-use crate::run;
+use xtask::run;
 
 /// Writes one file per kernel to `folder`, below the root if it is relative.
 pub(crate) fn write(folder: &str) -> Result<(), String> {

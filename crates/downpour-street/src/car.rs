@@ -114,7 +114,8 @@ fn low(z: f32) -> f32 {
 
 /// Points of a cross-section from the lower edge to the middle of the roof.
 const POINTS: usize = 14;
-/// First and last point of the side window.
+/// First point of the seal below the side window, which ends at the first of the window; and the window's last point.
+const SEAL: usize = GLASS_FROM - 1;
 const GLASS_FROM: usize = 7;
 const GLASS_TO: usize = 9;
 
@@ -133,7 +134,7 @@ fn section(z: f32, k: usize) -> Vec3 {
         4 => [w, shoulder],
         5 => [w - 0.022, mix(shoulder, belt, 0.6)],
         6 => [w - 0.055, belt],
-        7 => [w - 0.075 - 0.05 * lean, belt + 0.10 * cabin],
+        7 => [w - 0.062 - 0.03 * lean, belt + 0.05 * cabin],
         8 => [mix(w - 0.075, roof, 0.55), belt + 0.55 * cabin],
         9 => [roof + 0.012, belt + 0.86 * cabin],
         10 => [roof - 0.03, belt + 0.945 * cabin],
@@ -185,6 +186,8 @@ fn skin(z: f32, k: usize) -> Material {
                 Material::CarGlass
             }
         }
+        // The seal below the side windows.
+        SEAL if (-1.62..0.70).contains(&z) => Material::Trim,
         11.. if is_windscreen || is_hatch => Material::CarGlass,
         _ => Material::CarPaint,
     }
@@ -380,9 +383,14 @@ fn fittings(mesh: &mut Mesh, number: u32, has_wheels: bool) {
             let y = 0.816 + 0.014 * k as f32;
             lamp(plain(Material::TailLight), [0.42, 0.70], [y, y + 0.008], 0.008);
         }
-        // Door handles.
+        // Door handles, in the paint, before dark hollows.
         for z in [0.02, -0.86] {
-            mesh.block(plain(Material::Trim), [x * 0.875 - 0.012, 0.79, z - 0.09], [0.024, 0.022, 0.18]);
+            mesh.block(plain(Material::Trim), [x * 0.866 - 0.012, 0.775, z - 0.075], [0.024, 0.034, 0.15]);
+            mesh.block(
+                plain(Material::CarPaint),
+                [x * 0.880 - 0.013, 0.792, z - 0.095],
+                [0.026, 0.024, 0.19],
+            );
         }
     }
     // Grille and lower intake, plates, wipers' cowl.

@@ -8,7 +8,7 @@ use crate::mesh::{BEHIND, Mesh, plain, tinted};
 use crate::model::Lamp;
 use crate::noise::{hash, mix};
 use crate::settings::LampEra;
-use crate::tree;
+use crate::tree::foliage::Twig;
 
 /// Paint of cast iron.
 const IRON: [f32; 3] = [0.028, 0.032, 0.030];
@@ -382,12 +382,14 @@ pub(crate) fn planter() -> Mesh {
     mesh.block(wood, [-0.26, 0.44, -0.26], [0.52, 0.05, 0.52]);
     mesh.block(plain(Material::Soil), [-0.22, 0.44, -0.22], [0.44, 0.055, 0.44]);
     let middle = Vec3::new(0.0, 0.75, 0.0);
-    for k in 0..110 {
+    for k in 0..64 {
         let r = |n: i32| hash(k, n, 431);
-        let (turn, out) = (r(0) * std::f32::consts::TAU, 0.27 * r(1).sqrt());
-        let center = Vec3::new(out * ops::cos(turn), 0.54 + 0.55 * r(2), out * ops::sin(turn));
-        let tint = Vec3::new(0.62, 0.80, 0.72) * mix(0.6, 1.0, 3.0 * out);
-        tree::card(&mut mesh, center, 0.19, (center - middle).normalize_or_zero(), tint, 9000 + k);
+        let (turn, out) = (r(0) * std::f32::consts::TAU, 0.22 * r(1).sqrt());
+        let at = Vec3::new(out * ops::cos(turn), 0.50 + 0.42 * r(2), out * ops::sin(turn));
+        let away = (at - middle).normalize_or(Vec3::Y);
+        let tint = Vec3::new(0.62, 0.80, 0.72) * mix(0.7, 1.0, 3.6 * out);
+        let along = away + Vec3::Y * 0.5;
+        Twig { at, along, size: mix(0.20, 0.28, r(3)), out: away, tint, id: 9000 + k }.grow(&mut mesh);
     }
     mesh
 }

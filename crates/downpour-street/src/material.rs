@@ -270,7 +270,8 @@ impl Material {
             Self::ShopLight => glow(look([0.85; 3], 0.6), WARM, SHOP_CD_M2),
             Self::Sign => textured("signs_color.jpg", None, 0.55),
             Self::LampGlass => glow(look([0.72, 0.71, 0.66], 0.3), WARM, LAMP_CD_M2),
-            Self::CarPaint => look([1.0; 3], 0.32),
+            // The clear coat's gloss over the base.
+            Self::CarPaint => look([1.0; 3], 0.10),
             Self::CarGlass => look([0.014, 0.016, 0.017], 0.04),
             Self::Trim => look([0.022, 0.022, 0.024], 0.55),
             Self::Rubber => look([0.032, 0.032, 0.033], 0.88),

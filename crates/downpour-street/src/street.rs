@@ -323,7 +323,7 @@ fn furnish(settings: &StreetSettings, ground: &Ground, cars: &[ParkedCar], plan:
                         // Along +x the pavement rises, away from the road.
                         let flat =
                             Placement::new(side * x, height(x), z, if side > 0.0 { 0.0 } else { 180.0 });
-                        plan.place("grate", || tree::grate(PAVEMENT_FALL), flat);
+                        plan.place("grate", || tree::grate::grate(PAVEMENT_FALL), flat);
                     }
                     6 => plan.place("bench", furniture::bench, put(wall, 0.0)),
                     7 => plan.place("planter", furniture::planter, put(wall + 0.1, 0.0)),

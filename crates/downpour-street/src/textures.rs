@@ -14,7 +14,7 @@ use crate::raster::{Format, Raster};
 
 pub(crate) use facade::{ASHLAR_M, BRICK_M, CLOTH_M, JOINERY_M, PLASTER_M, ROOF_M};
 pub(crate) use ground::{ASPHALT_M, COVER_M, CURB_M, SETTS_M, SLABS_M};
-pub(crate) use leaves::CLUSTERS;
+pub(crate) use leaves::TWIGS;
 pub(crate) use metal::{IRON_M, ZINC_M};
 pub(crate) use rooms::{CURTAINS, VIEWS};
 pub(crate) use sign::SIGNS;

@@ -1,140 +1,147 @@
-//! A young lime tree, its leaves as small clusters on cards; and the grate in the pavement around its foot.
+//! A young lime tree: a trunk, limbs that bend up to the light, branches on them, and twigs with leaves along those.
+
+pub(crate) mod foliage;
+pub(crate) mod grate;
 
 use downpour_math::ops;
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
 use crate::material::Material;
-use crate::mesh::{BELOW, Mesh, Vertex, plain, tinted};
+use crate::mesh::{Mesh, plain};
 use crate::noise::{hash, mix, smooth};
-use crate::textures::CLUSTERS;
+use foliage::Twig;
 
 /// Middle of the crown and its half axes, meters.
 const CROWN: Vec3 = Vec3::new(0.05, 3.75, 0.03);
-const HALF_AXES: Vec3 = Vec3::new(1.40, 1.72, 1.34);
-/// Twigs with leaves, and cards on each.
-const TWIGS: i32 = 125;
-const CARDS: i32 = 11;
-/// Half the edge of the grate.
-pub(crate) const GRATE_M: f32 = 0.60;
+const HALF_AXES: Vec3 = Vec3::new(1.45, 1.85, 1.40);
+/// Height up to which the trunk is kept clear of limbs, and its end, meters.
+const CLEAR_M: f32 = 1.95;
+const TRUNK_M: f32 = 5.0;
+/// Limbs, from the lowest to the highest.
+const LIMBS: i32 = 13;
+/// Turn from one limb to the next, or from one twig to the next: the golden angle.
+const TURN: f32 = 2.399_963;
 
-/// A point at random directions within the unit sphere, near its surface more often.
-fn direction(id: i32) -> Vec3 {
-    let r = |n: i32| hash(id, n, 405);
-    let (y, turn) = (mix(-0.92, 1.0, r(0)), r(1) * std::f32::consts::TAU);
-    let flat = (1.0 - y * y).max(0.0).sqrt();
-    Vec3::new(flat * ops::cos(turn), y, flat * ops::sin(turn))
-}
+/// Centers and radii of a branch, from its foot to its tip.
+type Path = Vec<(Vec3, f32)>;
 
 /// The tree, 5.5 m high.
 pub(crate) fn tree() -> Mesh {
     let mut mesh = Mesh::default();
     let bark = plain(Material::Bark);
-    let trunk: Vec<(Vec3, f32)> = (0..=8)
+    let trunk = trunk();
+    mesh.tube(bark, &trunk, 10);
+    leaves(&mut mesh, &trunk, 0.86, 9, 1);
+    for k in 0..LIMBS {
+        let limb = limb(&trunk, k);
+        mesh.tube(bark, &limb, 6);
+        leaves(&mut mesh, &limb, 0.80, 4, 100 + k);
+        let height = k as f32 / (LIMBS - 1) as f32;
+        let count = mix(6.4, 3.6, height) as i32;
+        for n in 0..count {
+            let id = 20 * k + n;
+            let branch = branch(&limb, (n as f32 + 0.6) / count as f32, mix(1.0, 0.62, height), id);
+            mesh.tube(bark, &branch, 3);
+            leaves(&mut mesh, &branch, 0.30, 7, 200 + id);
+        }
+    }
+    mesh
+}
+
+/// The trunk: it sways a little, tapers, and spreads at its foot.
+fn trunk() -> Path {
+    (0..=10)
         .map(|k| {
-            let t = k as f32 / 8.0;
+            let t = k as f32 / 10.0;
             let sway = Vec3::new(0.10 * ops::sin(3.1 * t), 0.0, 0.07 * ops::sin(4.3 * t + 1.0));
-            let foot = 0.05 * (1.0 - t) * (1.0 - t) * (1.0 - t);
-            (sway + Vec3::Y * (4.6 * t - 0.1), mix(0.095, 0.022, t) + foot)
+            let foot = 0.055 * (1.0 - smooth(0.0, 0.16, t));
+            (sway + Vec3::Y * ((TRUNK_M + 0.1) * t - 0.1), mix(0.082, 0.012, t) + foot)
         })
-        .collect();
-    mesh.tube(bark, &trunk, 9);
-    for twig in 0..TWIGS {
-        let r = |n: i32| hash(twig, n, 406);
-        let way = direction(twig);
-        // The outline is uneven: limbs reach farther on some sides, the sky is seen between others.
-        let lobes = ops::sin(3.0 * way.x + 4.0 * way.y + 1.0) * ops::sin(3.6 * way.z - 2.0 * way.y + 0.4);
-        let reach = mix(0.50, 1.0, r(2).sqrt()) * (1.0 + 0.16 * lobes);
-        let tip = CROWN + way * HALF_AXES * reach;
-        // It rises from the trunk, steeper below.
-        let from = trunk[(2.0 + 5.0 * smooth(2.2, 5.2, tip.y - 0.5)) as usize].0;
-        let bend = from.lerp(tip, 0.55) - Vec3::Y * 0.12;
-        if twig % 4 == 0 {
-            mesh.tube(bark, &[(from, 0.018), (bend, 0.010), (tip, 0.004)], 4);
-        }
-        let along = (tip - bend).normalize_or_zero();
-        let hue = Vec3::new(mix(0.62, 0.98, r(3)), mix(0.78, 0.94, r(4)), mix(0.60, 1.0, r(5)));
-        for leaf in 0..CARDS {
-            let id = twig * CARDS + leaf;
-            let q = |n: i32| hash(id, n, 407);
-            let jitter = Vec3::new(q(0) - 0.5, q(1) - 0.55, q(2) - 0.5) * 0.46;
-            let at = tip - along * (0.55 * q(3)) + jitter;
-            let off = (at - CROWN) / HALF_AXES;
-            // Leaves within the crown and on its lower side get less of the sky.
-            let depth = mix(0.34, 1.0, smooth(0.25, 1.05, off.length()));
-            let height = mix(0.66, 1.0, smooth(-0.9, 0.7, off.y));
-            let tint = hue * (depth * height * mix(0.85, 1.0, q(4)));
-            card(&mut mesh, at, mix(0.20, 0.31, q(5)), off.normalize_or_zero(), tint, id);
-        }
-    }
-    mesh
+        .collect()
 }
 
-/// A card with a cluster of leaves. Its front looks out of the crown, and its normals are bent that way, so that the crown is shaded
-/// as one body.
-pub(crate) fn card(mesh: &mut Mesh, center: Vec3, size: f32, out: Vec3, tint: Vec3, id: i32) {
-    let r = |n: i32| hash(id, n, 411);
-    let random = Vec3::new(r(0) - 0.5, r(1) - 0.5, r(2) - 0.5) * 2.2;
-    let drawn = (out * 0.55 + Vec3::Y * 0.35 + random).normalize_or(Vec3::Y);
-    let facing = if drawn.dot(out) < 0.0 { -drawn } else { drawn };
-    let side = facing.any_orthonormal_vector();
-    let up = facing.cross(side);
-    let (c, s) = (ops::cos(r(3) * std::f32::consts::TAU), ops::sin(r(3) * std::f32::consts::TAU));
-    let (right, up) = (side * c + up * s, up * c - side * s);
-    let normal = (out * 0.75 + facing * 0.45 + Vec3::Y * 0.2).normalize_or(Vec3::Y);
-    let cell = (r(4) * (CLUSTERS * CLUSTERS) as f32) as u32;
-    let (column, row) = ((cell % CLUSTERS) as f32, (cell / CLUSTERS) as f32);
-    let part = mesh.part(Material::Leaf);
-    let first = part.vertices.len() as u32;
-    for [x, y] in [[-0.5f32, -0.5f32], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]] {
-        // Bent along a diagonal, as leaves hang.
-        let droop = facing * (-0.16 * size * (x + y) * (x + y));
-        part.vertices.push(Vertex {
-            position: center + (right * x + up * y) * size + droop,
-            normal,
-            uv: Vec2::new(column + x + 0.5, row + 0.5 - y) / CLUSTERS as f32,
-            tint,
-        });
-    }
-    part.indices.extend([0, 1, 2, 0, 2, 3].map(|k| first + k));
+/// A limb of the trunk: the lowest reach far out and rise late, the highest go up.
+fn limb(trunk: &[(Vec3, f32)], k: i32) -> Path {
+    let r = |n: i32| hash(k, n, 404);
+    let t = k as f32 / (LIMBS - 1) as f32;
+    let foot = mix(CLEAR_M, 4.35, t) / TRUNK_M;
+    let (from, thick) = at(trunk, foot);
+    let turn = TURN * k as f32 + 0.7 * (r(0) - 0.5);
+    let out = Vec3::new(ops::cos(turn), 0.0, ops::sin(turn));
+    let reach = mix(1.18, 0.42, t * t) * mix(0.82, 1.10, r(1));
+    let rise = mix(0.75, 0.95, t) * mix(0.85, 1.15, r(2));
+    let to = from + out * reach + Vec3::Y * rise;
+    let bend = from + out * (0.62 * reach) + Vec3::Y * (mix(0.22, 0.45, t) * rise);
+    path([from, bend, to], [thick * mix(0.42, 0.60, t), 0.007], 6, 0.035, 500 + k)
 }
 
-/// The grate, in the plane of a pavement that rises by `slope` along x: bars of cast iron over earth, open around the trunk.
-pub(crate) fn grate(slope: f32) -> Mesh {
-    let mut mesh = Mesh::default();
-    let iron = tinted(Material::Iron, [0.085, 0.078, 0.07]);
-    let half = GRATE_M;
-    mesh.block(plain(Material::Soil), [-half, -0.03, -half], [2.0 * half, 0.034, 2.0 * half]);
-    let mut bar = |x: [f32; 2], z: [f32; 2]| {
-        mesh.cuboid(iron, Vec3::new(x[0], 0.0, z[0]), Vec3::new(x[1], 0.014, z[1]), BELOW);
-    };
-    for side in [-1.0f32, 1.0] {
-        let (a, b) = (side * half, side * (half - 0.05));
-        bar([a.min(b), a.max(b)], [-half, half]);
-        bar([0.05 - half, half - 0.05], [a.min(b), a.max(b)]);
-    }
-    const BARS: i32 = 17;
-    const HOLE_M: f32 = 0.21;
-    for k in 0..BARS {
-        let x = mix(0.08 - half, half - 0.08, k as f32 / (BARS - 1) as f32);
-        let (w, end) = (0.019, half - 0.05);
-        let hole = (HOLE_M * HOLE_M - x * x).max(0.0).sqrt();
-        if hole > 0.0 {
-            bar([x - w, x + w], [-end, -hole]);
-            bar([x - w, x + w], [hole, end]);
-        } else {
-            bar([x - w, x + w], [-end, end]);
+/// A branch of a limb at a part of its length, on alternate sides.
+fn branch(limb: &[(Vec3, f32)], part: f32, scale: f32, id: i32) -> Path {
+    let r = |n: i32| hash(id, n, 405);
+    let along = mix(0.22, 0.97, part);
+    let (from, thick) = at(limb, along);
+    let tangent = (at(limb, along + 0.03).0 - at(limb, along - 0.03).0).normalize_or(Vec3::Y);
+    let across = tangent.cross(Vec3::Y).normalize_or(Vec3::X);
+    let side = if id % 2 == 0 { 1.0 } else { -1.0 };
+    let spread = across * (side * mix(0.45, 0.95, r(0)));
+    let way =
+        (tangent * mix(0.35, 0.8, r(1)) + spread + Vec3::Y * mix(-0.30, 0.55, r(2))).normalize_or(Vec3::Y);
+    let length = scale * mix(0.86, 0.44, part) * mix(0.8, 1.15, r(3));
+    let to = from + way * length;
+    let bend = from + way * (0.5 * length) - Vec3::Y * (0.10 * length);
+    path([from, bend, to], [0.6 * thick, 0.0025], 3, 0.02, 600 + id)
+}
+
+/// A curve from the first point to the last, drawn toward the one between them and not quite smooth, as of `steps` pieces.
+fn path([from, bend, to]: [Vec3; 3], radii: [f32; 2], steps: i32, wander: f32, id: i32) -> Path {
+    (0..=steps)
+        .map(|k| {
+            let t = k as f32 / steps as f32;
+            let r = |n: i32| hash(20 * id + k, n, 406) - 0.5;
+            let off = Vec3::new(r(0), r(1), r(2)) * (2.0 * wander * t * (1.0 - t) * 2.0);
+            let center = from.lerp(bend, t).lerp(bend.lerp(to, t), t);
+            (center + off, mix(radii[0], radii[1], t))
+        })
+        .collect()
+}
+
+/// Point and radius of a path at a part of it, 0 to 1.
+fn at(path: &[(Vec3, f32)], part: f32) -> (Vec3, f32) {
+    let place = part.clamp(0.0, 1.0) * (path.len() - 1) as f32;
+    let k = (place as usize).min(path.len() - 2);
+    let ((a, a_radius), (b, b_radius)) = (path[k], path[k + 1]);
+    let t = place - k as f32;
+    (a.lerp(b, t), mix(a_radius, b_radius, t))
+}
+
+/// Twigs along the end of a path, from a part of it on, and one at its tip.
+fn leaves(mesh: &mut Mesh, path: &[(Vec3, f32)], start: f32, count: i32, id: i32) {
+    for k in 0..count {
+        let id = 16 * id + k;
+        let r = |n: i32| hash(id, n, 407);
+        let part = mix(start, 1.0, k as f32 / (count - 1) as f32);
+        let foot = at(path, part).0;
+        let tangent = (at(path, part + 0.02).0 - at(path, part - 0.06).0).normalize_or(Vec3::Y);
+        let across = tangent.any_orthonormal_vector();
+        let turn = TURN * k as f32 + r(0);
+        let around = across * ops::cos(turn) + tangent.cross(across) * ops::sin(turn);
+        // Weak twigs hang; the last goes on where its branch ends.
+        let aside = if k + 1 == count { 0.15 } else { mix(0.6, 1.2, r(1)) };
+        let along = tangent * 0.7 + around * aside - Vec3::Y * (0.28 * r(2));
+        let off = (foot + along * 0.15 - CROWN) / HALF_AXES;
+        // Young leaves at the outside are lighter than old ones within.
+        let light = mix(0.72, 1.0, smooth(0.35, 1.0, off.length())) * mix(0.84, 1.08, r(3));
+        let hue = Vec3::new(mix(0.80, 1.05, r(4)), 1.0, mix(0.75, 1.0, r(5)));
+        Twig {
+            at: foot,
+            along,
+            size: mix(0.32, 0.46, r(6)),
+            out: off.normalize_or(Vec3::Y),
+            tint: hue * light,
+            id,
         }
+        .grow(mesh);
     }
-    for side in [-1.0f32, 1.0] {
-        let z = side * 0.30;
-        bar([0.05 - half, half - 0.05], [z - 0.02, z + 0.02]);
-    }
-    for part in mesh.parts.values_mut() {
-        for vertex in &mut part.vertices {
-            vertex.position.y += slope * vertex.position.x;
-        }
-    }
-    mesh
 }
 
 #[cfg(test)]
@@ -149,8 +156,23 @@ mod tests {
             (low, high) = (low.min(vertex.position), high.max(vertex.position));
         }
         let size = high - low;
-        assert!((5.2..6.3).contains(&high.y) && (2.4..4.0).contains(&size.x), "{low} {high}");
-        assert!(mesh.triangle_count() < 5000, "{}", mesh.triangle_count());
+        assert!((5.2..6.3).contains(&high.y) && (2.4..4.2).contains(&size.x), "{low} {high}");
+        assert!(mesh.triangle_count() < 6500, "{}", mesh.triangle_count());
+    }
+
+    /// Leaves of a street's lime cover its ground three to six times.
+    #[test]
+    fn the_crown_has_the_leaves_of_a_lime() {
+        let mesh = tree();
+        let part = &mesh.parts[&Material::Leaf];
+        let corner = |k: u32| part.vertices[k as usize].position;
+        let area =
+            |t: &[u32]| 0.5 * (corner(t[1]) - corner(t[0])).cross(corner(t[2]) - corner(t[0])).length();
+        let cards: f32 = part.indices.chunks_exact(3).map(area).sum();
+        let ground = std::f32::consts::PI * HALF_AXES.x * HALF_AXES.z;
+        // Leaves cover a third of their cards.
+        let index = cards / 3.0 / ground;
+        assert!((3.0..6.0).contains(&index), "{index}");
     }
 
     /// Cards that face outwards are lit as one body: no normal points into the crown or behind its card.
@@ -162,15 +184,6 @@ mod tests {
             let [a, b, c] = [0, 1, 2].map(|k| part.vertices[triangle[k] as usize]);
             let face = (b.position - a.position).cross(c.position - a.position).normalize();
             assert!(face.dot(a.normal) > 0.0, "{} {face} {}", a.position, a.normal);
-        }
-    }
-
-    #[test]
-    fn a_grate_lies_in_its_pavement() {
-        let mesh = grate(0.02);
-        for vertex in &mesh.parts[&Material::Iron].vertices {
-            let over = vertex.position.y - 0.02 * vertex.position.x;
-            assert!((-1e-6..0.0141).contains(&over), "{over}");
         }
     }
 }

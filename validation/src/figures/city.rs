@@ -11,9 +11,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use crate::quantity::{size, within};
-use crate::run;
 use effects::{EFFECTS, Effect};
 use merge::merged;
+use xtask::run;
 
 /// Folder of the street's weather files, and of the models that they name.
 const STREET: &str = "assets/scenes/street";

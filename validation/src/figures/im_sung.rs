@@ -22,10 +22,10 @@ use std::path::{Path, PathBuf};
 
 use image::RgbImage;
 
-use crate::run;
 pub(crate) use options::Options;
 use table::Run;
 use weather::{Model, Rain};
+use xtask::run;
 
 /// The file of street and camera.
 const SCENE: &str = "street.gltf";

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use crate::run::cargo;
+use xtask::run::cargo;
 
 /// Tables 1 and 2 of Rousseau 2008: cost and error of streaks.
 #[derive(Args, Debug)]

@@ -1,11 +1,12 @@
 //! Railings of iron, balconies of stone, flower boxes.
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
 use super::{House, Story};
 use crate::material::Material;
-use crate::mesh::{BEHIND, Mesh, Paint, Vertex, tinted};
-use crate::noise::hash;
+use crate::mesh::{BEHIND, Mesh, Paint, tinted};
+use crate::noise::{hash, mix};
+use crate::tree::foliage::Twig;
 
 const IRON: [f32; 3] = [0.085, 0.088, 0.088];
 
@@ -139,22 +140,13 @@ pub(super) fn flowers(w: f32, mesh: &mut Mesh) {
     let p = |x: f32, y: f32, z: f32| Vec3::new(x, y, z);
     let z = [-0.16, 0.02];
     mesh.cuboid(clay, p(0.12, 0.0, z[0]), p(w - 0.12, 0.16, z[1]), 0);
-    let part = mesh.part(Material::Leaf);
-    let count = (w * 14.0) as i32;
+    let count = (w * 7.0) as i32;
     for k in 0..count {
         let r = |n: u32| hash(k, 5, 360 + n);
-        let center =
-            p(0.14 + (w - 0.28) * k as f32 / count as f32, 0.20 + 0.10 * r(0), z[0] + 0.10 + 0.12 * r(1));
-        let (c, s) = (r(2) - 0.5, r(3) - 0.5);
-        let right = Vec3::new(1.0, 0.4 * s, 1.4 * c).normalize_or_zero() * 0.11;
-        let up = (Vec3::Y + Vec3::new(s, 0.0, 0.8 * c)).normalize_or_zero() * 0.11;
-        let tint = Vec3::splat(0.6 + 0.4 * r(4));
-        let first = part.vertices.len() as u32;
-        for [x, y] in [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]] {
-            let uv = Vec2::new(0.5 + 0.4 * x * r(5), 0.5 - 0.4 * y);
-            let normal = (Vec3::Z + Vec3::Y).normalize_or_zero();
-            part.vertices.push(Vertex { position: center + right * x + up * y, normal, uv, tint });
-        }
-        part.indices.extend([0, 1, 2, 0, 2, 3].map(|n| first + n));
+        let x = 0.14 + (w - 0.28) * k as f32 / count as f32;
+        let at = p(x, 0.13 + 0.05 * r(0), z[0] + 0.05 + 0.08 * r(1));
+        let along = Vec3::Y + p(1.4 * (r(2) - 0.5), 0.0, 1.2 * (r(3) - 0.5));
+        let tint = Vec3::splat(0.7 + 0.3 * r(4));
+        Twig { at, along, size: mix(0.18, 0.26, r(5)), out: Vec3::Z, tint, id: 9200 + k }.grow(mesh);
     }
 }

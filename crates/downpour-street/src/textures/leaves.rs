@@ -1,56 +1,108 @@
-//! Clusters of leaves with coverage, and bark.
+//! Twigs with leaves and coverage, and bark.
 
 use downpour_math::ops;
 
 use crate::noise::{fractal, hash, mix, mix3, smooth};
 use crate::raster::Raster;
 
-/// Clusters of leaves along each edge of the picture.
-pub(crate) const CLUSTERS: u32 = 2;
-/// Leaves of a cluster.
-const LEAVES: i32 = 11;
+/// Twigs along each edge of the picture.
+pub(crate) const TWIGS: u32 = 2;
+/// Texels along each edge of the picture.
+const TEXELS: u32 = 512;
+/// Leaves of a twig.
+const LEAVES: i32 = 17;
 
-/// Color of a leaf at a point of a cluster, if one is there: the topmost.
-fn leaf(cluster: i32, u: f32, v: f32) -> Option<[f32; 3]> {
-    (0..LEAVES).rev().find_map(|k| {
-        let r = |n: i32| hash(k + 100 * cluster, n, 141);
-        // Stalks start around the middle, tips point away from it.
-        let turn = (k as f32 + 0.8 * r(0)) * 2.4;
-        let reach = mix(0.06, 0.27, r(1).sqrt());
-        let (cx, cy) = (0.5 + reach * ops::cos(turn), 0.5 + reach * ops::sin(turn));
-        let lean = turn + (r(2) - 0.5) * 1.6;
-        let (c, s) = (ops::cos(lean), ops::sin(lean));
-        let (dx, dy) = (u - cx, v - cy);
-        let (along, across) = (dx * c + dy * s, -dx * s + dy * c);
-        let length = mix(0.30, 0.42, r(3));
-        let t = along / length + 0.5;
+/// Where the twig is at a height, 0 at its foot to 1 at its tip.
+fn stem(twig: i32, height: f32) -> f32 {
+    let r = |n: i32| hash(twig, n, 142) - 0.5;
+    0.5 + r(0) * 0.16 * height + 0.05 * r(1) * ops::sin(5.0 * height)
+}
+
+/// A leaf of a twig: leaves are on alternate sides, smaller toward the tip, the last one at it.
+struct Leaf {
+    foot: [f32; 2],
+    way: [f32; 2],
+    length: f32,
+    width: f32,
+    color: [f32; 3],
+}
+
+impl Leaf {
+    fn new(twig: i32, k: i32) -> Self {
+        let r = |n: i32| hash(k + 100 * twig, n, 141);
+        let height = mix(0.10, 0.76, (k as f32 + 0.6 * (r(0) - 0.5)).max(0.0) / (LEAVES - 1) as f32);
+        let side = if k + 1 == LEAVES {
+            0.0
+        } else if k % 2 == 0 {
+            1.0
+        } else {
+            -1.0
+        };
+        // From the twig's direction; those near its tip stand closer to it.
+        let turn = side * mix(1.35, 0.55, height) + 0.7 * (r(1) - 0.5);
+        let way = [ops::sin(turn), ops::cos(turn)];
+        // A stalk first.
+        let stalk = mix(0.03, 0.10, r(2));
+        let foot = [stem(twig, height) + stalk * way[0], height + stalk * way[1]];
+        // It ends within its card.
+        let room =
+            |at: f32, way: f32| (if way > 0.0 { 0.98 - at } else { at - 0.02 }) / way.abs().max(1.0e-3);
+        let room = room(foot[0], way[0]).min(room(foot[1], way[1]));
+        let green = mix3([0.070, 0.112, 0.030], [0.125, 0.180, 0.052], r(4));
+        let old = mix3(green, [0.22, 0.19, 0.055], smooth(0.88, 1.0, r(5)) * 0.8);
+        Self {
+            foot,
+            way,
+            length: (mix(0.27, 0.18, height) * mix(0.85, 1.15, r(3))).min(room),
+            // Seen aslant, most are narrower than they are.
+            width: mix(0.55, 1.0, r(6).sqrt()),
+            color: old.map(|c| c * mix(0.72, 1.15, r(7))),
+        }
+    }
+
+    /// Its color at a point, if it is there: heart-shaped, toothed, with a rib and veins, one half folded up.
+    fn at(&self, u: f32, v: f32) -> Option<[f32; 3]> {
+        let (dx, dy) = (u - self.foot[0], v - self.foot[1]);
+        let (along, across) =
+            (dx * self.way[0] + dy * self.way[1], (dx * self.way[1] - dy * self.way[0]) / self.width);
+        let t = along / self.length;
         if !(0.0..1.0).contains(&t) {
             return None;
         }
-        // Heart-shaped: broad near the stalk, pointed at the tip; the edge is toothed.
-        let teeth = 1.0 + 0.05 * ops::sin(60.0 * t);
-        let half = length * 1.02 * t.sqrt() * (1.0 - t) * teeth;
-        if across.abs() > half {
+        let teeth = 1.0 + 0.06 * ops::sin(70.0 * t);
+        if across.abs() > self.length * 1.06 * t.sqrt() * (1.0 - t) * teeth {
             return None;
         }
-        let rib = 1.0 - smooth(0.004, 0.012, across.abs());
-        let side = (along - 1.3 * across.abs()) * 34.0;
-        let vein = (1.0 - smooth(0.0, 0.16, (side - side.round()).abs())) * 0.4;
-        let green = mix3([0.074, 0.098, 0.036], [0.118, 0.138, 0.054], r(4));
-        let old = mix3(green, [0.16, 0.135, 0.045], smooth(0.86, 1.0, r(5)) * 0.7);
-        // One half of a leaf is folded up: a little brighter.
-        let fold = if across > 0.0 { 1.07 } else { 0.93 };
-        Some(old.map(|c| c * mix(0.75, 1.12, r(6)) * fold * (1.0 + 0.30 * rib.max(vein))))
-    })
+        let rib = 1.0 - smooth(0.003, 0.009, across.abs());
+        let vein_at = (along - 1.2 * across.abs()) * 42.0;
+        let vein = (1.0 - smooth(0.0, 0.18, (vein_at - vein_at.round()).abs())) * 0.35;
+        let fold = if across > 0.0 { 1.10 } else { 0.90 };
+        Some(self.color.map(|c| c * fold * (1.0 + 0.35 * rib.max(vein))))
+    }
 }
 
-/// Clusters of leaves, 256 texels square; outside the leaves the color continues so that edges do not turn dark.
+/// Color of a twig at a point, `v` from its foot to its tip, if anything is there: leaves over the stem.
+fn twig(leaves: &[Leaf], number: i32, u: f32, v: f32) -> Option<[f32; 3]> {
+    let leaf = leaves.iter().rev().find_map(|leaf| leaf.at(u, v));
+    let on_stem = v < 0.82 && (u - stem(number, v)).abs() < mix(0.010, 0.005, v);
+    leaf.or(on_stem.then_some([0.10, 0.075, 0.05]))
+}
+
+/// Leaves of all twigs, twig by twig.
+fn all_leaves() -> Vec<Vec<Leaf>> {
+    let each = 0..(TWIGS * TWIGS) as i32;
+    each.map(|number| (0..LEAVES).map(|k| Leaf::new(number, k)).collect()).collect()
+}
+
+/// Twigs with leaves, 512 texels square; outside them the color continues so that edges do not turn dark.
 pub(crate) fn leaves() -> Raster {
-    Raster::new(256, 256, |u, v| {
-        let (x, y) = (u * CLUSTERS as f32, v * CLUSTERS as f32);
-        match leaf((x.floor() + CLUSTERS as f32 * y.floor()) as i32, x.fract(), y.fract()) {
+    let all = all_leaves();
+    Raster::new(TEXELS, TEXELS, |u, v| {
+        let (x, y) = (u * TWIGS as f32, v * TWIGS as f32);
+        let number = x.floor() as usize + TWIGS as usize * y.floor() as usize;
+        match twig(&all[number], number as i32, x.fract(), 1.0 - y.fract()) {
             Some([r, g, b]) => [r, g, b, 1.0],
-            None => [0.09, 0.112, 0.042, 0.0],
+            None => [0.095, 0.140, 0.042, 0.0],
         }
     })
 }
@@ -68,14 +120,30 @@ pub(crate) fn bark() -> Raster {
 mod tests {
     use super::*;
 
-    /// Rays pass a dozen holes: a cluster must not be mostly air, nor a full square.
+    /// Rays pass a dozen holes: a twig must not be mostly air, nor a full square.
     #[test]
-    fn a_cluster_covers_a_third_of_its_card() {
+    fn a_twig_covers_a_third_of_its_card() {
         let n = 64;
-        for cluster in 0..(CLUSTERS * CLUSTERS) as i32 {
-            let at = |k: i32| leaf(cluster, (k % n) as f32 / n as f32, (k / n) as f32 / n as f32);
+        for (number, leaves) in all_leaves().iter().enumerate() {
+            let at = |k: i32| {
+                let (u, v) = ((k % n) as f32 / n as f32, (k / n) as f32 / n as f32);
+                twig(leaves, number as i32, u, v)
+            };
             let fraction = (0..n * n).filter(|&k| at(k).is_some()).count() as f32 / (n * n) as f32;
-            assert!((0.3..0.7).contains(&fraction), "{cluster} {fraction}");
+            assert!((0.25..0.45).contains(&fraction), "{number} {fraction}");
+        }
+    }
+
+    /// No leaf is cut off by the edge of its card.
+    #[test]
+    fn leaves_end_within_their_card() {
+        for (number, leaves) in all_leaves().iter().enumerate() {
+            for k in 0..256 {
+                let t = k as f32 / 255.0;
+                for [u, v] in [[0.002, t], [0.998, t], [t, 0.998]] {
+                    assert!(twig(leaves, number as i32, u, v).is_none(), "{number} {u} {v}");
+                }
+            }
         }
     }
 }

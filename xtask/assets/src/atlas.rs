@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use downpour_atlas::{StreakOptions, StreakOscillation, StreakSet, light_directions, write_streaks};
 
-use crate::run;
+use xtask::run;
 
 const USAGE: &str = "\
 cargo xtask atlas [--check] [--quick]              write assets/streaks, or compare it; --quick: one set of it

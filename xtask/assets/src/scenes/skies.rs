@@ -11,7 +11,7 @@ use exr::prelude::{FlatSamples, ReadChannels as _, ReadLayers as _, read};
 use image::codecs::hdr::HdrEncoder;
 
 use super::sky::{ClearSky, SUN_RADIUS};
-use crate::run;
+use xtask::run;
 
 /// Size of a map.
 const SIZE: [usize; 2] = [1024, 512];

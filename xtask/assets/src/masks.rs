@@ -6,7 +6,7 @@ use downpour_drop::DropShape;
 use downpour_mask::file::{exr, ktx2, png};
 use downpour_mask::{Mask, MaskOptions, trace_drop};
 
-use crate::run;
+use xtask::run;
 
 /// Diameters of the texture array in millimeters: the range of natural rain, denser where shape changes fast.
 const ARRAY_MM: [f64; 10] = [0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0];

@@ -1,0 +1,3 @@
+//! Child processes and paths of the workspace, for `cargo xtask` and the programs that it calls.
+
+pub mod run;
