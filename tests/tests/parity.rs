@@ -35,7 +35,7 @@ fn main() -> ExitCode {
 
     let mut trials = vec![{
         let devices = Arc::clone(&devices);
-        Trial::test("adapter", move || devices.any().map(|_| ())).with_ignored_flag(off)
+        Trial::test("adapter", move || devices.take().map(|_| ())).with_ignored_flag(off)
     }];
     for case in cases::functions() {
         let (devices, report) = (Arc::clone(&devices), Arc::clone(&report));
@@ -43,7 +43,7 @@ fn main() -> ExitCode {
         let label = case.function;
         trials.push(
             Trial::test(name, move || {
-                let device = devices.any()?;
+                let device = devices.take()?;
                 judge(label, &device.gpu, &case.tol, &report, |gpu| case.run(gpu))
             })
             .with_ignored_flag(off),
@@ -53,7 +53,7 @@ fn main() -> ExitCode {
         let (devices, report) = (Arc::clone(&devices), Arc::clone(&report));
         trials.push(
             Trial::test(format!("kernel::{}", case.name), move || {
-                let device = devices.of(&format!("{} {:?}", case.entry(), case.overrides))?;
+                let device = devices.take()?;
                 drop(device.relay.take_dispatched());
                 judge(case.name, &device.gpu, &case.tol, &report, case.run)?;
                 must_dispatch(&case, &device.relay)
@@ -65,18 +65,18 @@ fn main() -> ExitCode {
     for broken in BROKEN {
         let devices = Arc::clone(&devices);
         let name = format!("control::{} with {}", broken.function, broken.wrong);
-        let control = move || must_fail(broken, &devices.any()?.gpu);
+        let control = move || must_fail(broken, &devices.take()?.gpu);
         trials.push(Trial::test(name, control).with_ignored_flag(off));
     }
 
     for (name, broken) in BROKEN_KERNELS {
         let devices = Arc::clone(&devices);
         let label = format!("control::{} with {}", broken.function, broken.wrong);
-        let control = move || must_fail_in(name, broken, &devices.any()?.gpu);
+        let control = move || must_fail_in(name, broken, &devices.take()?.gpu);
         trials.push(Trial::test(label, control).with_ignored_flag(off));
     }
 
-    // Cases of one kernel apart from each other: they wait for the device that has compiled it.
+    // Cases of one kernel apart from each other: at the same time two devices would both compile it.
     trials.sort_by_key(|trial| hash_of(trial.name()));
     let conclusion = libtest_mimic::run(&arguments, trials);
     if let Some(name) = devices.adapter() {
@@ -96,7 +96,7 @@ fn hash_of(text: &str) -> u64 {
     hasher.finish()
 }
 
-/// As many devices as cases run beside each other: a software driver compiles the kernels of one device one after another.
+/// As many devices as cases run beside each other: those of one device wait for each other.
 fn device_count(arguments: &Arguments) -> usize {
     let cores = std::thread::available_parallelism().map_or(1, NonZero::get);
     arguments.test_threads.unwrap_or(cores).clamp(1, MAX_DEVICES)
@@ -120,22 +120,18 @@ impl Devices {
         (0..count).map(open).collect::<Result<_, _>>().map(Self)
     }
 
-    /// A device for a case with kernels of its own: any that is free.
-    fn any(&self) -> Result<MutexGuard<'_, Device>, Failed> {
+    /// One that is free.
+    fn take(&self) -> Result<MutexGuard<'_, Device>, Failed> {
         let free = self.0.iter().find_map(|device| match device.try_lock() {
             Ok(device) => Some(device),
             // A case that has panicked leaves its device as good as it was.
             Err(TryLockError::Poisoned(device)) => Some(device.into_inner()),
             Err(TryLockError::WouldBlock) => None,
         });
-        free.map_or_else(|| self.of(""), Ok)
-    }
-
-    /// The device for cases of a kernel, which compiles it once.
-    fn of(&self, kernel: &str) -> Result<MutexGuard<'_, Device>, Failed> {
-        let count = self.0.len().max(1) as u64;
-        let device = self.0.get((hash_of(kernel) % count) as usize).ok_or("no adapter was asked for")?;
-        Ok(device.lock().unwrap_or_else(PoisonError::into_inner))
+        // More threads than devices wait for the first.
+        let device = free
+            .or_else(|| self.0.first().map(|device| device.lock().unwrap_or_else(PoisonError::into_inner)));
+        device.ok_or_else(|| "no adapter was asked for".into())
     }
 
     /// Name of their adapter.
