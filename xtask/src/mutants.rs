@@ -37,10 +37,7 @@ pub(crate) fn try_sample() -> Result<(), String> {
 fn program(name: &str, arguments: &[&str]) -> Result<(), String> {
     // With the tests of its package, of the whole workspace: the features are those of `cargo xtask test`, and nothing is built twice.
     run::cargo(&["test", "--workspace", "--all-features", "--locked", "--no-run", "--test", "parity"], &[])?;
-    let program = run::built("debug", name);
-    let status = run::command(&program.display().to_string(), arguments)
-        .env("XDG_RUNTIME_DIR", driver::runtime()?)
-        .status()
-        .map_err(|error| format!("{}: {error}", program.display()))?;
-    if status.success() { Ok(()) } else { Err(format!("{name} {} failed", arguments.join(" "))) }
+    let mut command = run::command(&run::built("debug", name).display().to_string(), arguments);
+    let what = format!("{name} {}", arguments.join(" "));
+    run::finish(command.env("XDG_RUNTIME_DIR", driver::runtime()?), &what)
 }

@@ -25,11 +25,17 @@ pub fn command(program: &str, arguments: &[&str]) -> Command {
 pub fn cargo(arguments: &[&str], environment: &[(&str, &str)]) -> Result<(), String> {
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
     println!("$ cargo {}", arguments.join(" "));
-    let status = command(&cargo, arguments)
-        .envs(environment.iter().copied())
-        .status()
-        .map_err(|error| format!("cargo did not start: {error}"))?;
-    if status.success() { Ok(()) } else { Err(format!("cargo {} failed", arguments.join(" "))) }
+    let mut command = command(&cargo, arguments);
+    finish(command.envs(environment.iter().copied()), &format!("cargo {}", arguments.join(" ")))
+}
+
+/// Runs a command, which is called `what` in errors.
+///
+/// # Errors
+/// That it did not start, or failed.
+pub fn finish(command: &mut Command, what: &str) -> Result<(), String> {
+    let status = command.status().map_err(|error| format!("{what} did not start: {error}"))?;
+    if status.success() { Ok(()) } else { Err(format!("{what} failed")) }
 }
 
 /// The command `downpour`: the one given, or that of this tree, built.

@@ -98,7 +98,7 @@ fn path([from, bend, to]: [Vec3; 3], radii: [f32; 2], steps: i32, wander: f32, i
         .map(|k| {
             let t = k as f32 / steps as f32;
             let r = |n: i32| hash(20 * id + k, n, 406) - 0.5;
-            let off = Vec3::new(r(0), r(1), r(2)) * (2.0 * wander * t * (1.0 - t) * 2.0);
+            let off = Vec3::new(r(0), r(1), r(2)) * (4.0 * wander * t * (1.0 - t));
             let center = from.lerp(bend, t).lerp(bend.lerp(to, t), t);
             (center + off, mix(radii[0], radii[1], t))
         })

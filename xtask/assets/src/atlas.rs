@@ -4,11 +4,13 @@
 mod columbia;
 mod sheet;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use downpour_atlas::{StreakOptions, StreakOscillation, StreakSet, light_directions, write_streaks};
 
 use xtask::run;
+
+use crate::files::{self, Asset};
 
 const USAGE: &str = "\
 cargo xtask atlas [--check] [--quick]              write assets/streaks, or compare it; --quick: one set of it
@@ -23,8 +25,6 @@ const SHOWN_MM: [f64; 2] = [2.0, 4.0];
 const ELEVATIONS_DEG: [f64; 3] = [-40.0, 0.0, 40.0];
 /// The most bytes that the folder may hold.
 const BUDGET: usize = 4 << 20;
-
-type Asset = (String, Vec<u8>);
 
 /// Runs the task with its arguments.
 pub(crate) fn run(arguments: &[&str]) -> Result<(), String> {
@@ -67,55 +67,21 @@ fn make(quick: bool) -> Result<Vec<Asset>, String> {
     if !quick {
         assets.push(("preview.png".to_owned(), sheet::sheet(&shown)?));
     }
-    let bytes: usize = assets.iter().map(|(_, bytes)| bytes.len()).sum();
+    let bytes = files::total(&assets);
     if bytes > BUDGET {
         return Err(format!("the streaks take {bytes} bytes, more than {BUDGET}"));
     }
     Ok(assets)
 }
 
-/// Writes a file so that it is never there in part.
-fn publish(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), String> {
-    let path = folder.join(name);
-    let part = folder.join(format!(".{name}.part"));
-    std::fs::write(&part, bytes)
-        .and_then(|()| std::fs::rename(&part, &path))
-        .map_err(|error| format!("{}: {error}", path.display()))?;
-    println!("{:>9} bytes  {}", bytes.len(), path.display());
-    Ok(())
-}
-
 fn write(quick: bool) -> Result<(), String> {
-    let folder = folder();
-    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    make(quick)?.iter().try_for_each(|(name, bytes)| publish(&folder, name, bytes))
+    files::write(&folder(), &make(quick)?)
 }
 
 /// Compares the folder with generated files.
 pub(crate) fn check(quick: bool) -> Result<(), String> {
-    let mut wrong = Vec::new();
-    for (name, bytes) in make(quick)? {
-        match std::fs::read(folder().join(&name)) {
-            Ok(kept) if kept == bytes => {}
-            Ok(kept) => {
-                let at =
-                    kept.iter().zip(&bytes).position(|(a, b)| a != b).unwrap_or(kept.len().min(bytes.len()));
-                let (kept, made) = (kept.len(), bytes.len());
-                wrong.push(format!("{name}: differs from byte {at} on ({kept} bytes kept, {made} made)"));
-            }
-            Err(error) => wrong.push(format!("{name}: {error}")),
-        }
-    }
-    let which = if quick { "one of assets/streaks is" } else { "assets/streaks are" };
-    if wrong.is_empty() {
-        println!("{which} equal to the generated files, byte for byte");
-        Ok(())
-    } else {
-        Err(format!(
-            "assets/streaks differ from the generated files (cargo xtask atlas):\n  {}",
-            wrong.join("\n  ")
-        ))
-    }
+    let which = if quick { "one of assets/streaks" } else { "assets/streaks" };
+    files::verdict(which, "atlas", &files::differences(&folder(), &make(quick)?))
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The assets that the code makes: `cargo xtask masks`, `atlas` and `scenes`. The tests compare the committed files with them.
 
 mod atlas;
+mod files;
 mod masks;
 mod scenes;
 

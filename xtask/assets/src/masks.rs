@@ -8,6 +8,8 @@ use downpour_mask::{Mask, MaskOptions, trace_drop};
 
 use xtask::run;
 
+use crate::files::{self, Asset};
+
 /// Diameters of the texture array in millimeters: the range of natural rain, denser where shape changes fast.
 const ARRAY_MM: [f64; 10] = [0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0];
 /// Texels along an edge of the array's masks. A drop drawn with its mask is a hundred pixels wide at most.
@@ -18,8 +20,6 @@ const SINGLE_MM: [f64; 4] = [1.0, 2.0, 6.0, 9.0];
 const SINGLE_SIZE: u32 = 512;
 /// The most bytes that the folder may hold.
 const BUDGET: usize = 8 << 20;
-
-type Asset = (String, Vec<u8>);
 
 fn folder() -> PathBuf {
     run::root().join("assets/masks")
@@ -43,7 +43,7 @@ fn make() -> Result<Vec<Asset>, String> {
         ));
         assets.push((format!("drop_{d}mm.png"), png::write_png(&single).map_err(to_error)?));
     }
-    let bytes: usize = assets.iter().map(|(_, bytes)| bytes.len()).sum();
+    let bytes = files::total(&assets);
     if bytes > BUDGET {
         return Err(format!("the masks take {bytes} bytes, more than {BUDGET}"));
     }
@@ -52,41 +52,10 @@ fn make() -> Result<Vec<Asset>, String> {
 
 /// Writes the folder.
 pub(crate) fn write() -> Result<(), String> {
-    let folder = folder();
-    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    for (name, bytes) in make()? {
-        let path = folder.join(&name);
-        let part = folder.join(format!(".{name}.part"));
-        std::fs::write(&part, &bytes)
-            .and_then(|()| std::fs::rename(&part, &path))
-            .map_err(|error| format!("{}: {error}", path.display()))?;
-        println!("{:>9} bytes  {}", bytes.len(), path.display());
-    }
-    Ok(())
+    files::write(&folder(), &make()?)
 }
 
 /// Compares the folder with generated files.
 pub(crate) fn check() -> Result<(), String> {
-    let mut wrong = Vec::new();
-    for (name, bytes) in make()? {
-        match std::fs::read(folder().join(&name)) {
-            Ok(kept) if kept == bytes => {}
-            Ok(kept) => {
-                let at =
-                    kept.iter().zip(&bytes).position(|(a, b)| a != b).unwrap_or(kept.len().min(bytes.len()));
-                let (kept, made) = (kept.len(), bytes.len());
-                wrong.push(format!("{name}: differs from byte {at} on ({kept} bytes kept, {made} made)"));
-            }
-            Err(error) => wrong.push(format!("{name}: {error}")),
-        }
-    }
-    if wrong.is_empty() {
-        println!("assets/masks are equal to the generated files, byte for byte");
-        Ok(())
-    } else {
-        Err(format!(
-            "assets/masks differ from the generated files (cargo xtask masks):\n  {}",
-            wrong.join("\n  ")
-        ))
-    }
+    files::verdict("assets/masks", "masks", &files::differences(&folder(), &make()?))
 }

@@ -10,6 +10,8 @@ use downpour_street::{Car, Street, StreetSettings, puddle_mask, textures};
 
 use xtask::run;
 
+use crate::files::{self, Asset};
+
 /// The most bytes that the street may take, and the car that drives through it.
 const BUDGET: usize = 15_000_000;
 const CAR_BUDGET: usize = 200_000;
@@ -19,8 +21,6 @@ const MAX_TRIANGLES: usize = 400_000;
 const PAINT: usize = 2;
 /// The most texels of all textures, of four bytes each.
 const MAX_TEXELS: usize = 25 << 20;
-
-type Asset = (String, Vec<u8>);
 
 fn folder() -> PathBuf {
     run::root().join("assets/scenes/street")
@@ -61,7 +61,7 @@ fn make() -> Result<Vec<Asset>, String> {
     );
     for (what, is_car, most) in [("street", false, BUDGET), ("car", true, CAR_BUDGET)] {
         let own = assets.iter().filter(|(name, _)| name.starts_with("models/car") == is_car);
-        let bytes: usize = own.map(|(_, bytes)| bytes.len()).sum();
+        let bytes = files::total(own);
         if bytes > most {
             return Err(format!("the {what} takes {bytes} bytes, more than {most}"));
         }
@@ -86,13 +86,8 @@ pub(crate) fn write() -> Result<(), String> {
     }
     println!("{:>9} triangles", street.triangle_count());
     let (folder, assets) = (folder(), make()?);
-    for (name, bytes) in &assets {
-        let path = folder.join(name);
-        save(&path, bytes).map_err(|error| format!("{}: {error}", path.display()))?;
-        println!("{:>9} bytes  {}", bytes.len(), path.display());
-    }
-    let bytes: usize = assets.iter().map(|(_, bytes)| bytes.len()).sum();
-    println!("{bytes:>9} bytes in {} files", assets.len());
+    files::write(&folder, &assets)?;
+    println!("{:>9} bytes in {} files", files::total(&assets), assets.len());
     match strangers(&folder, &assets)?.as_slice() {
         [] => Ok(()),
         more => {
@@ -101,39 +96,13 @@ pub(crate) fn write() -> Result<(), String> {
     }
 }
 
-fn save(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    if let Some(parent) = path.parent() {
-        std::fs::create_dir_all(parent)?;
-    }
-    let part = path.with_extension("part");
-    std::fs::write(&part, bytes)?;
-    std::fs::rename(&part, path)
-}
-
 /// Compares the folder with generated files.
 pub(crate) fn check() -> Result<(), String> {
     let (folder, assets) = (folder(), make()?);
-    let mut wrong = Vec::new();
-    for (name, bytes) in &assets {
-        match std::fs::read(folder.join(name)) {
-            Ok(kept) if kept == *bytes => {}
-            Ok(kept) => {
-                wrong.push(format!("{name}: differs ({} bytes kept, {} made)", kept.len(), bytes.len()));
-            }
-            Err(error) => wrong.push(format!("{name}: {error}")),
-        }
-    }
+    let mut wrong = files::differences(&folder, &assets);
     wrong
         .extend(strangers(&folder, &assets)?.iter().map(|name| format!("{name}: the code does not make it")));
-    if wrong.is_empty() {
-        println!("assets/scenes/street is equal to the generated files, byte for byte");
-        Ok(())
-    } else {
-        Err(format!(
-            "assets/scenes/street differs from the generated files (cargo xtask scenes):\n  {}",
-            wrong.join("\n  ")
-        ))
-    }
+    files::verdict("assets/scenes/street", "scenes", &wrong)
 }
 
 /// Files inside the folder that are not assets.

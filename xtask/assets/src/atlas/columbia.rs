@@ -9,6 +9,8 @@ use downpour_atlas::write_streaks;
 use downpour_scene::Budget;
 use downpour_scene::picture::decode_gray16;
 
+use crate::files;
+
 /// Texels along a streak.
 const ROWS: u32 = 64;
 /// The largest file that is read, in bytes: the database's have 70 kB.
@@ -70,7 +72,7 @@ pub(super) fn run(folder: &Path, width: &str, output: &Path) -> Result<(), Strin
     std::fs::create_dir_all(output).map_err(|error| format!("{}: {error}", output.display()))?;
     for (k, set) in sets.iter().enumerate() {
         let bytes = write_streaks(set).map_err(|error| error.to_string())?;
-        super::publish(output, &format!("columbia_{k}.ktx2"), &bytes)?;
+        files::publish(output, &format!("columbia_{k}.ktx2"), &bytes)?;
     }
     Ok(())
 }
