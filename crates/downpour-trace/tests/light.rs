@@ -544,6 +544,30 @@ fn a_red_lamps_mirror_image_stays_red() -> Outcome {
     Ok(())
 }
 
+/// What a pane lets through it does not scatter: clear glass is dark under a lamp, glass that lets half through half as bright as paint, with
+/// soft shadows and with hard ones, whatever the pixels.
+#[test]
+fn clear_glass_scatters_no_light_of_a_lamp() -> Outcome {
+    let seen = |transmission: f32, radius: f32, edge: u32| {
+        let mut builder = SceneBuilder::new();
+        let glass = builder.add_material(MaterialLook { transmission, ..diffuse(0.8) });
+        square(&mut builder, glass, Vec3::ZERO, Vec3::X * 2.0, Vec3::Y * 2.0);
+        let position = Vec3::new(2.0, 2.0, 1.5);
+        builder.add_light(LightSource::Point { radius, position, intensity: Vec3::splat(10.0), range: 0.0 });
+        let scene = builder.build(&SkyLight::uniform([0.0; 3]));
+        picture(&scene, Vec3::new(0.0, 0.0, 2.0), Vec3::ZERO, 0.7, [edge; 2], 1).map(|pixels| mean(&pixels))
+    };
+    for radius in [0.0, 0.1] {
+        for edge in [8, 96] {
+            let [opaque, half, clear] =
+                [seen(0.0, radius, edge)?, seen(0.5, radius, edge)?, seen(1.0, radius, edge)?];
+            println!("radius {radius}, {edge} pixels: {opaque:.4}, {half:.4}, {clear:.2e}");
+            assert!(opaque > 0.1 && (half / opaque - 0.5).abs() < 0.01 && clear < 0.01 * opaque);
+        }
+    }
+    Ok(())
+}
+
 /// A floor under an even sky shows what it reflects of it, whatever its index, its roughness and the noise: no ray counts more than
 /// the lobe can give.
 #[test]

@@ -144,6 +144,7 @@ fn run(
     let light = ClipLight { frames: settings.light_frames, frames_per_s: settings.fps };
     let options = RendererOptions {
         samples: settings.samples,
+        sky_rays: RendererOptions::sky_rays_for(settings.samples),
         first_s: settings.time_s(0),
         clip_light: settings.is_clip.then_some(light),
         ..RendererOptions::default()

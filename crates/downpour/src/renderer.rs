@@ -53,7 +53,8 @@ pub use truth::{PixelDrop, Truth};
 pub struct RendererOptions {
     /// Samples along an edge of a pixel, 1 to 16.
     pub samples: u32,
-    /// Rays to the sky per sample, 0 to 64; with 0 nothing hides the sky.
+    /// Rays that look for the light of sky and surfaces per sample, 0 to 64; with 0 nothing hides the sky. A pixel of one surface has so many
+    /// in all: [`RendererOptions::sky_rays_for`] follows the samples.
     pub sky_rays: u32,
     /// Distance in pixels between those whose rays look for the light of sky and surfaces, and of lamps on unresolved rain, which
     /// the pixels between take from them: 1 to 4; 1: all do. Fewer rays are faster and leave more noise. Of a plate that is kept it is
@@ -78,12 +79,22 @@ pub struct RendererOptions {
     pub clip_light: Option<ClipLight>,
 }
 
+impl RendererOptions {
+    /// Rays that look for the light of sky and surfaces per sample that go with a number of samples along an edge of a pixel: one less,
+    /// and one at least. All samples of a pixel that shows one surface share the rays of the first, so that more samples alone leave
+    /// as much noise there.
+    #[must_use]
+    pub fn sky_rays_for(samples: u32) -> u32 {
+        samples.saturating_sub(1).max(1)
+    }
+}
+
 impl Default for RendererOptions {
     /// 2 x 2 samples with a ray to the sky each, from time 0 on.
     fn default() -> Self {
         Self {
             samples: 2,
-            sky_rays: 1,
+            sky_rays: Self::sky_rays_for(2),
             ray_spacing: 1,
             refraction: None,
             atlas: None,

@@ -269,6 +269,7 @@ fn scene_direct(
                     soft = select(scene_softness(arrival.distance, arrival.spread, footprint), 1.0, is_area);
                 }
                 var bare = surface;
+                bare.diffuse *= 1.0 - surface.transmission;
                 if soft > 0.0 {
                     relief = scene_glow(surface, view, arrival, out) * soft;
                     glow = relief;

@@ -76,10 +76,10 @@ pub(crate) struct RenderArguments {
     #[arg(long, value_name = "N", default_value = "2", value_parser = quantity::samples)]
     #[arg(allow_hyphen_values = true)]
     samples: u32,
-    /// Rays to the sky per sample, 0 to 64; at 0 nothing occludes the sky.
-    #[arg(long, value_name = "N", default_value = "1", value_parser = quantity::sky_rays)]
-    #[arg(allow_hyphen_values = true)]
-    sky_rays: u32,
+    /// Rays that look for the light of sky and surfaces per sample, 0 to 64; at 0 nothing occludes the sky. By default as many as
+    /// `--samples`, less one, and one at least.
+    #[arg(long, value_name = "N", value_parser = quantity::sky_rays, allow_hyphen_values = true)]
+    sky_rays: Option<u32>,
     /// Pixels between those whose rays look for the light of sky and surfaces, and of lamps on unresolved rain, 1 to 4: more are
     /// faster, with more noise.
     #[arg(long, value_name = "N", default_value = "1", value_parser = quantity::ray_spacing)]
@@ -171,6 +171,11 @@ impl RenderArguments {
         Ok(())
     }
 
+    /// Rays that look for the light of sky and surfaces per sample.
+    fn sky_rays(&self) -> u32 {
+        self.sky_rays.unwrap_or_else(|| RendererOptions::sky_rays_for(self.samples))
+    }
+
     /// Renderer of the frames of a weather, from a time on.
     fn renderer(&self, input: Input, first_s: f64, measure: bool) -> Result<Renderer, Failure> {
         let Input { weather, loaded, .. } = input;
@@ -179,7 +184,7 @@ impl RenderArguments {
         let options = RendererOptions {
             kept_frames: 0,
             samples: self.samples,
-            sky_rays: self.sky_rays,
+            sky_rays: self.sky_rays(),
             ray_spacing: self.ray_spacing,
             refraction: self.refraction.map(RefractionForm::from),
             atlas: self.streaks.read(&weather)?.atlas()?,

@@ -11,7 +11,7 @@ use downpour::scene::picture::{Picture, Pixels};
 
 use crate::child::{Downpour, Ended};
 use crate::gltf_file::{gltf, tetrahedron};
-use crate::scene_files::{SIZE, storm, weather};
+use crate::scene_files::{NO_SPLASHES, SIZE, model, storm, weather};
 
 /// All channels of an OpenEXR file by their names.
 fn channels(bytes: &[u8]) -> HashMap<String, Vec<f32>> {
@@ -329,6 +329,20 @@ fn the_same_seed_gives_the_same_bytes() {
     assert_ne!(first.0, other.0);
     assert_ne!(first.1, other.1);
     assert_ne!(first.1, run(&["--time", "1"]).1);
+}
+
+/// More samples alone leave the noise of a single ray on what all of them show.
+#[test]
+fn more_samples_have_more_rays() {
+    let run = |arguments: &[&str]| {
+        let fixed = ["render", "storm.toml", "--backend", "cpu", "-o", "rain.exr", "--size", "32x18"];
+        let run = Downpour::new(&[&fixed, arguments].concat()).with_file("floor.gltf", model());
+        run.with_file("storm.toml", weather(NO_SPLASHES)).run().succeeded().file("rain.exr")
+    };
+    let followed = run(&["--samples", "3"]);
+    assert!(followed == run(&["--samples", "3", "--sky-rays", "2"]));
+    assert!(followed != run(&["--samples", "3", "--sky-rays", "1"]));
+    assert!(run(&["--samples", "1"]) == run(&["--samples", "1", "--sky-rays", "1"]));
 }
 
 #[test]

@@ -278,6 +278,7 @@ impl SceneView<'_> {
             };
             // The part that is told apart, with the facet's normal in place of the relief's.
             let mut bare = *surface;
+            bare.diffuse *= 1.0 - surface.transmission;
             if share.soft > 0.0 {
                 share.relief = self.scene_glow(surface, view, &arrival, out) * share.soft;
                 share.glow = share.relief;

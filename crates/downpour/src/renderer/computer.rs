@@ -22,7 +22,7 @@ use super::on_gpu::OnGpu;
 /// Choice of a device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
-    /// A GPU, else a software driver of one, else the CPU; the CPU too for what is too much for the GPU.
+    /// A GPU, else the CPU, which is faster than a software driver of a GPU; the CPU too for what is too much for the GPU.
     #[default]
     Auto,
     /// A GPU or its software driver.
@@ -48,6 +48,7 @@ impl Backend {
             Self::Auto | Self::Gpu => {
                 use downpour_gpu::{AdapterChoice, Gpu, GpuError};
                 match Gpu::open(&AdapterChoice::Auto) {
+                    Ok(gpu) if self == Self::Auto && gpu.adapter().is_software() => Ok(Device::cpu()),
                     Ok(gpu) => {
                         let is_software = gpu.adapter().is_software();
                         let gpu = if is_software { gpu.with_timeout(Device::SOFTWARE_TIMEOUT) } else { gpu };

@@ -310,7 +310,7 @@ impl Clip<'_> {
             ("fps", self.fps.to_string()),
             ("first frame", self.frames.first.to_string()),
             ("samples", arguments.samples.to_string()),
-            ("sky rays", arguments.sky_rays.to_string()),
+            ("sky rays", arguments.sky_rays().to_string()),
             ("ray spacing", arguments.ray_spacing.to_string()),
             ("light frames", arguments.light_frames.to_string()),
             ("refraction", self.refraction.clone()),
