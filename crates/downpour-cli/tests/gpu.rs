@@ -79,6 +79,11 @@ fn adapter() -> Option<String> {
     std::env::var("DOWNPOUR_ADAPTER").ok().filter(|name| !name.is_empty())
 }
 
+/// The adapters, the best one first.
+fn listed() -> serde_json::Value {
+    downpour(&["adapters", "--json"]).succeeded().json()
+}
+
 fn adapters_are_listed() {
     let ended = downpour(&["adapters", "--json"]).succeeded();
     let list = ended.json();
@@ -274,7 +279,7 @@ fn a_clip_of_a_lost_device_goes_on() {
 
 /// The CPU where nothing but a software driver is there, and the driver if it is named.
 fn auto_says_what_it_took() {
-    let list = downpour(&["adapters", "--json"]).succeeded().json();
+    let list = listed();
     let list = list.as_array().expect("an array");
     let ended = downpour(&["mask", "--diameter", "2", "--size", "32", "-o", "m.exr"]).succeeded();
     let took = if list.iter().all(|adapter| adapter["software"] == true) {
@@ -288,7 +293,7 @@ fn auto_says_what_it_took() {
 }
 
 fn an_adapter_is_taken_by_its_name() {
-    let list = downpour(&["adapters", "--json"]).succeeded().json();
+    let list = listed();
     for adapter in list.as_array().expect("an array") {
         let name = adapter["name"].as_str().expect("a name").to_uppercase();
         let ended = downpour(&["mask", "--diameter", "2", "--size", "32", "--adapter", &name, "-o", "m.exr"])
@@ -314,7 +319,7 @@ fn an_adapter_is_taken_by_its_name() {
 
 /// A mask is two submissions: the kernel and the readback.
 fn a_lost_device_publishes_nothing() {
-    let list = downpour(&["adapters", "--json"]).succeeded().json();
+    let list = listed();
     let name = list[0]["name"].as_str().expect("a name");
     for taken in [["--adapter", name], ["--backend", "gpu"]] {
         for point in ["lost@1", "lost@2"] {
