@@ -1,9 +1,10 @@
 //! Splash of a drop on a wet surface: whether there is one, and the size, duration and shape of its crown.
 //!
 //! Laws:
-//! - threshold: `K = We^0.5 Re^0.25` above 57.7 (C. Mundo, M. Sommerfeld, C. Tropea, Int. J. Multiphase Flow 21, 1995), with the
-//!   Weber number `We = rho u^2 d / sigma` and the Reynolds number `Re = rho u d / mu` of the speed `u` toward the surface. At
-//!   terminal speed drops from 0.69 mm on splash;
+//! - threshold: the root of the Weber number `We = rho u^2 d / sigma` of the speed `u` toward the surface above 20, on a film (R. L. Vander
+//!   Wal, G. M. Berger, S. D. Mozes, Experiments in Fluids 40, 2006). At terminal speed drops from 1.27 mm on splash on level ground; on a
+//!   surface 25 degrees from the vertical those of 3 mm do, on one of 10 degrees none do. (On a dry surface `We^0.5 Re^0.25` above 57.7 is the
+//!   threshold, of C. Mundo and others, 1995, which nearly all drops pass; rain falls on what is wet.)
 //! - radius of the crown: `r / d = (2/3)^(1/4) (d / h)^(1/4) (u t / d)^(1/2)` on a film of depth `h` (A. L. Yarin, D. A. Weiss,
 //!   J. Fluid Mech. 283, 1995), until it is highest at `u t / d =` [`RISE_TIMES`], after which it grows no more;
 //! - duration: the crown rises in [`RISE_SHARE`] of it and falls back in the rest. For a drop of 3 mm on a film of half a
@@ -17,12 +18,12 @@
 pub mod crown;
 
 use downpour_math::in_range;
-use downpour_shaders::sim::splash::{SPLASH_RISE_SHARE, SPLASH_RISE_TIMES};
+use downpour_shaders::sim::splash::{SPLASH_RISE_SHARE, SPLASH_RISE_TIMES, SPLASH_THRESHOLD};
 
 use crate::{DropError, water};
 
-/// Least splash parameter `K` of a drop that splashes.
-pub const THRESHOLD: f64 = 57.7;
+/// Root of the Weber number above which a drop splashes on a film.
+pub const THRESHOLD: f64 = SPLASH_THRESHOLD as f64;
 
 /// Time at which a crown is highest, in drop diameters over the drop's speed.
 pub const RISE_TIMES: f64 = SPLASH_RISE_TIMES as f64;
@@ -73,7 +74,21 @@ impl SplashLaw {
         self.film_m
     }
 
-    /// Splash parameter `K` of a drop of a diameter in m that meets a surface with a speed toward it in m/s.
+    /// Root of the Weber number of a drop of a diameter in m that meets a surface with a speed toward it in m/s.
+    ///
+    /// ```
+    /// use downpour_drop::splash::{FILM_M, SplashLaw};
+    /// let root = SplashLaw::new(FILM_M, 20.0)?.weber_root(2.0e-3, 6.49);
+    /// assert!((root - 34.0).abs() < 0.2);
+    /// # Ok::<(), downpour_drop::DropError>(())
+    /// ```
+    #[must_use]
+    pub fn weber_root(&self, diameter_m: f64, speed_m_s: f64) -> f64 {
+        (self.density * speed_m_s * speed_m_s * diameter_m / self.surface_tension).sqrt()
+    }
+
+    /// Splash parameter `K = We^0.5 Re^0.25` of Mundo and others 1995, with the Reynolds number `Re = rho u d / mu`, of a drop of a diameter
+    /// in m that meets a surface with a speed toward it in m/s.
     ///
     /// ```
     /// use downpour_drop::splash::{FILM_M, SplashLaw};
@@ -83,15 +98,14 @@ impl SplashLaw {
     /// ```
     #[must_use]
     pub fn parameter(&self, diameter_m: f64, speed_m_s: f64) -> f64 {
-        let weber = self.density * speed_m_s * speed_m_s * diameter_m / self.surface_tension;
         let reynolds = self.density * speed_m_s * diameter_m / self.viscosity;
-        weber.sqrt() * reynolds.sqrt().sqrt()
+        self.weber_root(diameter_m, speed_m_s) * reynolds.sqrt().sqrt()
     }
 
-    /// Splash parameter of a drop of 1 m at 1 m/s.
+    /// Root of the Weber number of a drop of 1 m at 1 m/s.
     #[must_use]
     pub fn strength(&self) -> f64 {
-        self.parameter(1.0, 1.0)
+        self.weber_root(1.0, 1.0)
     }
 
     /// Radius, m, of the highest crown of a drop of 1 m: that of others goes as the diameter to the power of 5/4.
@@ -103,7 +117,7 @@ impl SplashLaw {
     /// Splash of a drop of a diameter in m that meets a surface with a speed toward it in m/s; `None` if it does not splash.
     #[must_use]
     pub fn splash(&self, diameter_m: f64, speed_m_s: f64) -> Option<Splash> {
-        let splashes = speed_m_s > 0.0 && self.parameter(diameter_m, speed_m_s) > THRESHOLD;
+        let splashes = speed_m_s > 0.0 && self.weber_root(diameter_m, speed_m_s) > THRESHOLD;
         splashes.then(|| Splash {
             radius_m: self.radius(diameter_m, speed_m_s, RISE_TIMES * diameter_m / speed_m_s),
             duration_s: RISE_TIMES * diameter_m / speed_m_s / RISE_SHARE,
@@ -134,11 +148,21 @@ mod tests {
     }
 
     #[test]
-    fn drops_splash_from_seven_tenths_of_a_millimeter_on() {
-        // By hand from We and Re at terminal speed: K passes 57.7 at 0.69 mm.
-        for (diameter, splashes) in [(0.5e-3, false), (0.66e-3, false), (0.72e-3, true), (5.0e-3, true)] {
+    fn drops_splash_from_13_tenths_of_a_millimeter_on() {
+        // By hand at terminal speed: We is 223 at 1 mm, 603 at 1.5 mm, 1156 at 2 mm, 5670 at 5 mm.
+        for (diameter, weber) in [(1.0e-3, 223.0f64), (1.5e-3, 603.0), (2.0e-3, 1156.0), (5.0e-3, 5670.0)] {
+            let root = law().weber_root(diameter, falls(diameter));
+            assert!((root * root / weber - 1.0).abs() < 0.02, "{diameter}: {root}");
+        }
+        for (diameter, splashes) in [(0.7e-3, false), (1.2e-3, false), (1.35e-3, true), (5.0e-3, true)] {
             assert_eq!(law().splash(diameter, falls(diameter)).is_some(), splashes, "{diameter}");
         }
+        // On what is steep only the speed toward it counts.
+        let on_slope = |from_vertical: f64| {
+            let toward = falls(3.0e-3) * downpour_math::ops::f64::sin(from_vertical.to_radians());
+            law().splash(3.0e-3, toward).is_some()
+        };
+        assert!(on_slope(25.0) && !on_slope(20.0));
         assert!(law().splash(3.0e-3, -1.0).is_none());
         assert!(law().splash(3.0e-3, 0.0).is_none());
     }

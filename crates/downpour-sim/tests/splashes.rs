@@ -66,14 +66,17 @@ fn splashes(bvh: &Bvh, time_s: f64) -> Vec<FallingDrop> {
 /// Expected number of crowns on a square meter: the flux of the drops that splash, times how long each of them lasts.
 fn expected_per_m2() -> f64 {
     let speed = |d: f64| terminal_speed(FallSpeedModel::Beard1976, d, &Air::standard()).expect("a drop");
-    // K = 57.7 at 0.69 mm; twelve diameters over the speed are an eighth of the time. Some of the smallest are narrower than the
+    // The Weber number is 400 at the least of them; twelve diameters over the speed are an eighth of the time. Some of the smallest are narrower than the
     // least width on the picture, 0.75 mm: none here.
+    let weber = |d: f64| 998.2 * speed(d) * speed(d) * d / 0.0728;
+    let least =
+        (0..2000).map(|k| 1.0e-3 + 0.5e-6 * f64::from(k)).find(|&d| weber(d) > 400.0).expect("one splashes");
     let steps = 4000;
     (0..steps)
         .map(|k| {
-            let d = 0.69e-3 + (8.0e-3 - 0.69e-3) * (f64::from(k) + 0.5) / f64::from(steps);
+            let d = least + (8.0e-3 - least) * (f64::from(k) + 0.5) / f64::from(steps);
             let lasts = 8.0 * 12.0 * d / speed(d);
-            law().concentration(d) * speed(d) * lasts * (8.0e-3 - 0.69e-3) / f64::from(steps)
+            law().concentration(d) * speed(d) * lasts * (8.0e-3 - least) / f64::from(steps)
         })
         .sum()
 }

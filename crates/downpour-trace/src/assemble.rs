@@ -20,12 +20,12 @@ use crate::builder::{MeshPart, SceneBuilder};
 use crate::material::{MaterialLook, TextureSlot, TextureUse};
 use downpour_render::light::LightSource;
 
-/// Pictures that are in the scene already, each as color and as data.
+/// Pictures that are in the scene already, each by what it is used for.
 #[derive(Default)]
 struct Stored<'a> {
-    by_pointer: HashMap<(*const Picture, bool), TextureSlot>,
+    by_pointer: HashMap<(*const Picture, TextureUse), TextureSlot>,
     /// A kit of parts has one atlas, which each of its files brings along.
-    by_content: HashMap<(u64, bool), (&'a Arc<Picture>, TextureSlot)>,
+    by_content: HashMap<(u64, TextureUse), (&'a Arc<Picture>, TextureSlot)>,
 }
 
 /// Materials and textures of a scene: what no pose of it changes, and most of the work.
@@ -107,14 +107,16 @@ impl SceneBuilder {
             _ => (0, 0.5),
         };
         let textures = [
-            &material.base_color_texture,
-            &material.metallic_roughness_texture,
-            &material.normal_texture,
-            &material.emissive_texture,
-            &material.occlusion_texture,
-            &material.transmission_texture,
+            (&material.base_color_texture, false),
+            (&material.metallic_roughness_texture, false),
+            (&material.normal_texture, true),
+            (&material.emissive_texture, false),
+            (&material.occlusion_texture, false),
+            (&material.transmission_texture, false),
         ];
-        let maps = textures.map(|t| t.as_ref().and_then(|t| self.add_texture_use(scene, t, stored)));
+        let maps = textures.map(|(used, is_relief)| {
+            used.as_ref().and_then(|used| self.add_texture_use(scene, used, is_relief, stored))
+        });
         self.add_material(MaterialLook {
             base_color: material.base_color.into(),
             emission: material.emissive.into(),
@@ -138,20 +140,25 @@ impl SceneBuilder {
         &mut self,
         scene: &'a Scene,
         used: &TextureRef,
+        is_relief: bool,
         stored: &mut Stored<'a>,
     ) -> Option<u32> {
         let texture = scene.textures.get(used.texture)?;
-        let color = texture.encoding == Encoding::Srgb;
+        let of = match texture.encoding {
+            _ if is_relief => TextureUse::Normals,
+            Encoding::Srgb => TextureUse::Color,
+            _ => TextureUse::Data,
+        };
         let picture = &texture.picture;
-        let key = (Arc::as_ptr(picture), color);
+        let key = (Arc::as_ptr(picture), of);
         let slot = match stored.by_pointer.get(&key) {
             Some(slot) => *slot,
             None => {
-                let content = (digest(picture), color);
+                let content = (digest(picture), of);
                 let slot = match stored.by_content.get(&content) {
                     Some((known, slot)) if same(known, picture) => *slot,
                     _ => {
-                        let slot = self.add_picture(picture, color);
+                        let slot = self.add_picture(picture, of);
                         stored.by_content.insert(content, (picture, slot));
                         slot
                     }
@@ -166,7 +173,7 @@ impl SceneBuilder {
             Wrap::MirroredRepeat => mirror,
             Wrap::ClampToEdge => 0,
         };
-        let kept = slot.flags & downpour_shaders::render::scene::SCENE_ROOTED;
+        let kept = slot.flags & !(SCENE_REPEAT_U | SCENE_REPEAT_V);
         let sampler = texture.sampler;
         let slot = TextureSlot {
             // Rows, from glam's columns.
@@ -181,8 +188,7 @@ impl SceneBuilder {
         Some(self.add_slot(slot))
     }
 
-    fn add_picture(&mut self, picture: &Picture, color: bool) -> TextureSlot {
-        let of = if color { TextureUse::Color } else { TextureUse::Data };
+    fn add_picture(&mut self, picture: &Picture, of: TextureUse) -> TextureSlot {
         let bytes: Cow<'_, [[u8; 4]]> = match &picture.pixels {
             Pixels::Rgba8(pixels) => Cow::Borrowed(pixels),
             Pixels::RgbaF32(pixels) => {

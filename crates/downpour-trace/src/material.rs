@@ -217,10 +217,12 @@ impl SceneData {
 }
 
 /// Meaning of the numbers of a texture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TextureUse {
     /// Colors, sRGB in the file.
     Color,
-    /// Numbers: normals, roughness, occlusion.
+    /// Numbers: roughness, occlusion.
     Data,
+    /// Normals in the space of a surface's tangents.
+    Normals,
 }

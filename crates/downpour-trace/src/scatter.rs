@@ -192,6 +192,7 @@ mod tests {
             bend: 0.0,
             porosity: 0.0,
             film: 0.0,
+            variance: 0.0,
         }
     }
 

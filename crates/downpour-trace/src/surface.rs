@@ -3,8 +3,8 @@
 
 use downpour_bvh::{Hit, bvh_blocker, bvh_hit};
 use downpour_shaders::render::scene::{
-    SCENE_BLENDED, SCENE_LAYERS, SCENE_MASKED, SCENE_NONE, SCENE_UNLIT, SURFACE_DENSE, SURFACE_GRAZING,
-    SURFACE_OBLIQUE, SURFACE_OPEN, SURFACE_POROUS,
+    SCENE_BLENDED, SCENE_LAYERS, SCENE_MASKED, SCENE_NONE, SCENE_UNLIT, SURFACE_BENT, SURFACE_DENSE,
+    SURFACE_GRAZING, SURFACE_OBLIQUE, SURFACE_OPEN, SURFACE_POROUS,
 };
 use downpour_sim::shelter::Holes;
 use glam::{Vec3, Vec4};
@@ -44,6 +44,8 @@ pub struct Surface {
     pub porosity: f32,
     /// Fraction that a film of water covers.
     pub film: f32,
+    /// Variance of the slopes of its relief that the ray's footprint does not resolve; the roughness allows for it.
+    pub variance: f32,
 }
 
 /// Rain falls through what is not seen: where a masked material is below its cutoff, or one that is blended has no alpha. Where
@@ -52,6 +54,23 @@ impl Holes for SceneData {
     fn is_hole(&self, hit: &Hit) -> bool {
         self.surface_is_open(hit)
     }
+}
+
+/// Variance of the slopes along both axes that a bent surface has within the footprint of a ray, of a width across it, that meets it at a
+/// cosine: those of a box.
+#[must_use]
+pub fn surface_turn(bend: f32, width: f32, cosine: f32) -> f32 {
+    let across = bend * width;
+    let along = across / cosine.abs().max(SURFACE_BENT);
+    (across * across + along * along) / 12.0
+}
+
+/// Roughness of a surface whose microfacets have a relief under them, with a variance of its slopes along both axes together: squares of
+/// alphas add up, as the alpha of Beckmann's distribution is the root of that variance.
+#[must_use]
+pub fn surface_roughness(own: f32, variance: f32) -> f32 {
+    let alpha = own * own;
+    (alpha * alpha + variance).sqrt().sqrt().min(1.0)
 }
 
 /// Fraction of a surface that soaks up rain: its material's own where that is not below 0; else rough stone, plaster and cloth do,
@@ -226,12 +245,15 @@ impl SceneData {
         let transmission = material.transmission * self.surface_texture(more[1], uv, &footprint).x;
 
         let mut normal = self.mix(hit, |c| Vec3::from(c.normal).extend(0.0)).truncate() * facing;
+        let bend = self.surface_bend(hit);
+        let mut variance = surface_turn(bend, cone * hit.distance, facet.dot(direction));
         if maps[2] != SCENE_NONE {
             let tangent = self.mix(hit, |c| c.tangent.into());
-            let map = self.surface_texture(maps[2], uv, &footprint).truncate() * 2.0 - Vec3::ONE;
+            let relief = self.surface_texture(maps[2], uv, &footprint);
             let side = (normal * facing).cross(tangent.truncate()) * tangent.w;
             let scale = material.normal_scale;
-            normal = tangent.truncate() * (map.x * scale) + side * (map.y * scale) + normal * map.z.max(0.05);
+            normal += tangent.truncate() * (relief.x * scale) + side * (relief.y * scale);
+            variance += relief.z * (scale * scale);
         }
         normal /= normal.dot(normal).sqrt().max(1.0e-20);
         // A shading normal that faces away from the viewer is bent back to the horizon.
@@ -250,7 +272,7 @@ impl SceneData {
             position: origin + direction * hit.distance,
             alpha: base.w,
             normal,
-            roughness,
+            roughness: surface_roughness(roughness, variance),
             facet,
             occlusion: occlusion.clamp(0.0, 1.0),
             diffuse: color * (1.0 - metallic),
@@ -258,9 +280,10 @@ impl SceneData {
             normal_reflectance: Vec3::splat(f0) * (1.0 - metallic) + color * metallic,
             transmission: transmission.clamp(0.0, 1.0) * (1.0 - metallic),
             emission,
-            bend: self.surface_bend(hit),
+            bend,
             porosity: surface_porosity(material.porosity, flags, roughness, metallic),
             film: 0.0,
+            variance,
         }
     }
 }

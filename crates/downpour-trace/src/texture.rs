@@ -3,9 +3,10 @@
 
 use downpour_math::ops;
 use downpour_shaders::render::scene::{
-    SCENE_MIRROR_U, SCENE_MIRROR_V, SCENE_REPEAT_U, SCENE_REPEAT_V, SCENE_ROOTED, TEXTURE_SPACE, TEXTURE_TENT,
+    SCENE_MIRROR_U, SCENE_MIRROR_V, SCENE_RELIEF, SCENE_REPEAT_U, SCENE_REPEAT_V, SCENE_ROOTED,
+    TEXTURE_SHARE_SHIFT, TEXTURE_SLOPE_STEPS, TEXTURE_SPACE, TEXTURE_STEEPEST, TEXTURE_TENT,
 };
-use glam::{Vec2, Vec4, Vec4Swizzles as _};
+use glam::{Vec2, Vec3, Vec4, Vec4Swizzles as _};
 
 use crate::data::SceneData;
 use crate::material::RenderSlot;
@@ -66,6 +67,14 @@ pub fn texture_taps(along: Vec2, across: Vec2, most: f32) -> TextureTaps {
     TextureTaps { line: longer * if taps > 1.0 { part } else { 0.0 }, taps, texel }
 }
 
+/// Variance of the slopes of a relief in a footprint that has two diameters in texels, from the means of the slopes (x, y) and of the sum
+/// of their squares (z). Between the middles of texels a relief is taken to be smooth: a footprint far smaller than a texel has none.
+#[must_use]
+pub fn texture_variance(means: Vec4, along: Vec2, across: Vec2) -> f32 {
+    let texels = along.dot(along).max(across.dot(across)) / (TEXTURE_TENT * TEXTURE_TENT);
+    (means.z - means.xy().dot(means.xy())).max(0.0) * texels.min(1.0)
+}
+
 /// Two neighbors, the `i`-th and the next, brought into the texture: indices of texels along an edge of `n`. Integers are divided
 /// once: that is slow.
 #[must_use]
@@ -81,9 +90,16 @@ pub fn texture_wrap(i: i32, n: i32, repeats: bool, mirrors: bool) -> [i32; 2] {
 }
 
 impl SceneData {
-    /// One texel, linear.
+    /// One texel, linear; of a relief: both slopes, the mean of the sum of their squares, and 1.
     fn texture_texel(&self, index: u32, flags: u32) -> Vec4 {
-        let [r, g, b, a] = self.texels[index as usize].to_le_bytes();
+        let word = self.texels[index as usize];
+        if flags & SCENE_RELIEF != 0 {
+            let steps = [word & 2047, (word >> 11) & 2047, word >> 22].map(|bits| bits as f32);
+            let middle = Vec3::new(TEXTURE_SLOPE_STEPS, TEXTURE_SLOPE_STEPS, 0.0);
+            let slope = (Vec3::from(steps) - middle) * (TEXTURE_STEEPEST / TEXTURE_SLOPE_STEPS);
+            return Vec4::new(slope.x, slope.y, slope.dot(slope), 1.0);
+        }
+        let [r, g, b, a] = word.to_le_bytes();
         let texel = Vec4::new(r.into(), g.into(), b.into(), a.into()) / 255.0;
         if flags & SCENE_ROOTED != 0 {
             return Vec4::new(texel.x * texel.x, texel.y * texel.y, texel.z * texel.z, texel.w);
@@ -107,7 +123,8 @@ impl SceneData {
         top * (1.0 - fy) + bottom * fy
     }
 
-    /// A slot at the corner's two sets of coordinates.
+    /// A slot at the corner's two sets of coordinates; of a relief: the mean of both slopes, the square of the alpha of the lobe of what varies
+    /// of them, and 1.
     #[must_use]
     pub fn texture_sample(&self, slot: u32, uv: Vec4, footprint: &TextureFootprint) -> Vec4 {
         let RenderSlot { matrix, offset, uv_set, flags, image } = self.material_slot(slot);
@@ -136,11 +153,15 @@ impl SceneData {
             };
             (0..taps as u32).map(level).sum::<Vec4>() / taps
         };
-        let near = mean(first, width, height) * (1.0 - fraction);
-        if fraction == 0.0 {
-            return near;
+        let mut sum = mean(first, width, height) * (1.0 - fraction);
+        if fraction > 0.0 {
+            let next = first + (width * height) as u32;
+            sum += mean(next, (width / 2).max(1), (height / 2).max(1)) * fraction;
         }
-        let next = first + (width * height) as u32;
-        near + mean(next, (width / 2).max(1), (height / 2).max(1)) * fraction
+        if flags & SCENE_RELIEF != 0 {
+            let share = ((flags >> TEXTURE_SHARE_SHIFT) & 255) as f32 / 255.0;
+            sum.z = texture_variance(sum, along, across) * share;
+        }
+        sum
     }
 }

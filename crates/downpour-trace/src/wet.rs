@@ -12,7 +12,8 @@
 //!    from what goes in and from what comes out, over the mean of both, so that white stays white. The coat is in the place of
 //!    the surface's own gloss, of which 0.3 % are left under water. A metal keeps its lobe.
 //! 5. The film follows the grains: noise of 3, 10 and 31 mm tilts it and makes it patchy. What a footprint does not resolve of the
-//!    slopes makes the coat rougher (M. Olano and D. Baker, LEAN Mapping, 2010), so that nothing flickers far away.
+//!    slopes makes the coat rougher (M. Olano and D. Baker, LEAN Mapping, 2010), so that nothing flickers far away; so does what it does not
+//!    resolve of the surface's own relief.
 //!
 //! What lets light through stays as it is; drops on it are of [`glazing`](crate::glazing). Light that has been thrown back twice finds dry
 //! surfaces.
@@ -200,7 +201,7 @@ pub(crate) fn wet_surface(dry: &Surface, wetness: f32, along: Vec3, relief: &Wet
     let coated =
         (1.0 - bare) * (1.0 - ((strongest - WET_DIELECTRIC) / (WET_METAL - WET_DIELECTRIC)).clamp(0.0, 1.0));
     let smooth_alpha = WET_SMOOTH_ALPHA + (WET_POROUS_ALPHA - WET_SMOOTH_ALPHA) * dry.porosity;
-    let coat = (smooth_alpha * smooth_alpha + relief.variance * dry.porosity).sqrt();
+    let coat = (smooth_alpha * smooth_alpha + relief.variance * dry.porosity + dry.variance).sqrt();
     let alpha = dry.roughness * dry.roughness;
     // The film's own relief, along the surface.
     let across = relief.slope - dry.normal * relief.slope.dot(dry.normal);

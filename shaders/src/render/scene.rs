@@ -58,6 +58,8 @@ shared_constants! {
         SURFACE_OBLIQUE: f32 = 1.0e-6;
         /// Minimum cosine between a ray and a normal for the length of a pixel's image on the surface.
         SURFACE_GRAZING: f32 = 0.05;
+        /// Minimum cosine between a ray and a bent surface for how much of it the ray's footprint has.
+        SURFACE_BENT: f32 = 0.2;
         /// Material flag: the base color is what is seen, without light.
         SCENE_UNLIT: u32 = 8;
         /// Material flag: shining glass for which a lamp stands that shines in all directions.
@@ -77,6 +79,14 @@ shared_constants! {
         TEXTURE_SPACE: f32 = 1.5;
         /// Texture flag: texels are square roots of linear colors.
         SCENE_ROOTED: u32 = 1;
+        /// Texture flag: texels are slopes of a relief.
+        SCENE_RELIEF: u32 = 32;
+        /// First of eight bits of a relief's flags that say which part of its slopes' variance is the square of its lobe's alpha.
+        TEXTURE_SHARE_SHIFT: u32 = 8;
+        /// Steps of a slope to each side of 0, and of the root of a variance.
+        TEXTURE_SLOPE_STEPS: f32 = 1023.0;
+        /// Largest slope of a relief, and largest root of a variance.
+        TEXTURE_STEEPEST: f32 = 4.0;
         /// Texture flag: repeats in u.
         SCENE_REPEAT_U: u32 = 2;
         /// Texture flag: mirrored repeat in u.

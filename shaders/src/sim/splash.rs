@@ -14,8 +14,8 @@ pub const KERNELS: &[&Kernel] = &[&SPLASH_FIND_KERNEL];
 shared_constants! {
     /// Laws of splashes (`downpour_drop::splash`), and what of them is drawn at random.
     SPLASH_CONSTANTS at "sim/splash_constants" {
-        /// Least splash parameter of a drop that splashes.
-        SPLASH_THRESHOLD: f32 = 57.7;
+        /// Root of the Weber number above which a drop splashes on a film.
+        SPLASH_THRESHOLD: f32 = 20.0;
         /// Time at which a crown is highest, in drop diameters over the drop's speed.
         SPLASH_RISE_TIMES: f32 = 12.0;
         /// Fraction of its duration in which a crown rises.

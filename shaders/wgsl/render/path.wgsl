@@ -221,7 +221,7 @@ fn path_water_surface(start: vec3f, along: vec3f, distance: f32, ripple: vec3f) 
     // Beckmann's alpha squared is the variance of the slope.
     let roughness = clamp(sqrt(sqrt(ripple.z)), 0.0, 1.0);
     let position = start + along * distance;
-    return Surface(position, 1.0, normal, roughness, up, 1.0, none, 0u, vec3f(PUDDLE_WATER_NORMAL), 0.0, none, 0.0, 0.0, 0.0);
+    return Surface(position, 1.0, normal, roughness, up, 1.0, none, 0u, vec3f(PUDDLE_WATER_NORMAL), 0.0, none, 0.0, 0.0, 0.0, 0.0);
 }
 
 // A ray that water mirrors: drawn from its ripples. Its weight is Fresnel's.

@@ -29,6 +29,8 @@ struct Surface {
     porosity: f32,
     // Fraction that a film of water covers.
     film: f32,
+    // Variance of the slopes of its relief that the ray's footprint does not resolve; the roughness allows for it.
+    variance: f32,
 }
 
 // A texture of a material's row, or white.
@@ -152,6 +154,20 @@ fn surface_bend(hit: SurfaceHit) -> f32 {
     return sqrt(turned / max(length, 1.0e-20));
 }
 
+// Variance of the slopes along both axes that a bent surface has within the footprint of a ray, of a width across it, that meets it at a
+// cosine: those of a box.
+fn surface_turn(bend: f32, width: f32, cosine: f32) -> f32 {
+    let across = bend * width;
+    let along = across / max(abs(cosine), SURFACE_BENT);
+    return (across * across + along * along) / 12.0;
+}
+
+// Roughness of a surface whose microfacets have a relief under them, with a variance of its slopes along both axes together.
+fn surface_roughness(own: f32, variance: f32) -> f32 {
+    let alpha = own * own;
+    return min(sqrt(sqrt(alpha * alpha + variance)), 1.0);
+}
+
 // Fraction of a surface that soaks up rain: its material's own where that is not below 0; else rough stone, plaster and cloth do,
 // metal, smooth paint and leaves do not.
 fn surface_porosity(own: f32, flags: u32, roughness: f32, metallic: f32) -> f32 {
@@ -200,11 +216,15 @@ fn surface_at(hit: SurfaceHit, origin: vec3f, direction: vec3f, cone: f32, taps:
     let transmission = material.transmission * texels[5].r;
 
     var normal = (corner.normal * w + second.normal * hit.u + third.normal * hit.v) * facing;
+    let bend = surface_bend(hit);
+    var variance = surface_turn(bend, cone * hit.distance, dot(facet, direction));
     if maps.z != SCENE_NONE {
         let tangent = corner.tangent * w + second.tangent * hit.u + third.tangent * hit.v;
-        let map = texels[2].xyz * 2.0 - vec3f(1.0);
+        let relief = texels[2];
         let side = cross(normal * facing, tangent.xyz) * tangent.w;
-        normal = tangent.xyz * (map.x * material.normal_scale) + side * (map.y * material.normal_scale) + normal * max(map.z, 0.05);
+        let scale = material.normal_scale;
+        normal = normal + tangent.xyz * (relief.x * scale) + side * (relief.y * scale);
+        variance += relief.z * (scale * scale);
     }
     normal = normal / max(sqrt(dot(normal, normal)), 1.0e-20);
     // A shading normal that faces away from the viewer is bent back to the horizon.
@@ -219,7 +239,7 @@ fn surface_at(hit: SurfaceHit, origin: vec3f, direction: vec3f, cone: f32, taps:
         origin + direction * hit.distance,
         base.a,
         normal,
-        roughness,
+        surface_roughness(roughness, variance),
         facet,
         clamp(occlusion, 0.0, 1.0),
         base.rgb * (1.0 - metallic),
@@ -227,8 +247,9 @@ fn surface_at(hit: SurfaceHit, origin: vec3f, direction: vec3f, cone: f32, taps:
         vec3f(f0) * (1.0 - metallic) + base.rgb * metallic,
         clamp(transmission, 0.0, 1.0) * (1.0 - metallic),
         emission,
-        surface_bend(hit),
+        bend,
         surface_porosity(material.porosity, flags, roughness, metallic),
         0.0,
+        variance,
     );
 }

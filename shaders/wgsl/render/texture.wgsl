@@ -26,9 +26,16 @@ fn texture_wrap(i: i32, n: i32, repeats: bool, mirrors: bool) -> vec2i {
     return clamp(vec2i(i, i + 1), vec2i(0), vec2i(n - 1));
 }
 
-// One texel, linear.
+// One texel, linear; of a relief: both slopes, the mean of the sum of their squares, and 1.
 fn texture_texel(index: u32, flags: u32) -> vec4f {
-    let texel = unpack4x8unorm(render_texels[index]);
+    let word = render_texels[index];
+    if (flags & SCENE_RELIEF) != 0u {
+        let steps = vec3f(f32(word & 2047u), f32((word >> 11u) & 2047u), f32(word >> 22u))
+            - vec3f(TEXTURE_SLOPE_STEPS, TEXTURE_SLOPE_STEPS, 0.0);
+        let slope = steps * (TEXTURE_STEEPEST / TEXTURE_SLOPE_STEPS);
+        return vec4f(slope.xy, dot(slope, slope), 1.0);
+    }
+    let texel = unpack4x8unorm(word);
     if (flags & SCENE_ROOTED) != 0u {
         return vec4f(texel.rgb * texel.rgb, texel.a);
     }
@@ -55,6 +62,13 @@ fn texture_level(first: u32, width: i32, height: i32, uv: vec2f, flags: u32) -> 
     return top * (1.0 - fy) + bottom * fy;
 }
 
+// Variance of the slopes of a relief in a footprint that has two diameters in texels, from the means of the slopes and of their squares.
+// Between the middles of texels a relief is taken to be smooth: a footprint far smaller than a texel has none.
+fn texture_variance(means: vec4f, along: vec2f, across: vec2f) -> f32 {
+    let texels = max(dot(along, along), dot(across, across)) / (TEXTURE_TENT * TEXTURE_TENT);
+    return max(means.z - dot(means.xy, means.xy), 0.0) * min(texels, 1.0);
+}
+
 // Samples in place of an ellipse with two diameters in texels: the line on which they lie, their number, and the edge of the texels that each
 // interpolates, at least 1. They are no farther apart than such texels reach, and have together the ellipse's variance.
 fn texture_taps(along: vec2f, across: vec2f, most: f32) -> vec4f {
@@ -73,7 +87,8 @@ fn texture_taps(along: vec2f, across: vec2f, most: f32) -> vec4f {
     return vec4f(longer * select(0.0, part, taps > 1.0), taps, texel);
 }
 
-// A slot at the corner's two sets of coordinates.
+// A slot at the corner's two sets of coordinates; of a relief: the mean of both slopes, the square of the alpha of the lobe of what varies of
+// them, and 1.
 fn texture_sample(slot: u32, uv: vec4f, footprint: TextureFootprint) -> vec4f {
     let found = material_slot(slot);
     let matrix = found.matrix;
@@ -88,11 +103,9 @@ fn texture_sample(slot: u32, uv: vec4f, footprint: TextureFootprint) -> vec4f {
     let size = vec2f(f32(image.x), f32(image.y));
     let along = select(footprint.along.xy, footprint.along.zw, found.uv_set == 1u);
     let across = select(footprint.across.xy, footprint.across.zw, found.uv_set == 1u);
-    let taps = texture_taps(
-        vec2f(matrix.x * along.x + matrix.y * along.y, matrix.z * along.x + matrix.w * along.y) * size,
-        vec2f(matrix.x * across.x + matrix.y * across.y, matrix.z * across.x + matrix.w * across.y) * size,
-        footprint.taps,
-    );
+    let longer = vec2f(matrix.x * along.x + matrix.y * along.y, matrix.z * along.x + matrix.w * along.y) * size;
+    let shorter = vec2f(matrix.x * across.x + matrix.y * across.y, matrix.z * across.x + matrix.w * across.y) * size;
+    let taps = texture_taps(longer, shorter, footprint.taps);
     let lod = clamp(log2(taps.w), 0.0, f32(image.w - 1u));
     var first = image.z;
     var width = i32(image.x);
@@ -116,6 +129,10 @@ fn texture_sample(slot: u32, uv: vec4f, footprint: TextureFootprint) -> vec4f {
         width = max(width / 2, 1);
         height = max(height / 2, 1);
         weight = select(0.0, fraction / taps.z, k == 0u);
+    }
+    if (found.flags & SCENE_RELIEF) != 0u {
+        let share = f32((found.flags >> TEXTURE_SHARE_SHIFT) & 255u) / 255.0;
+        sum.z = texture_variance(sum, longer, shorter) * share;
     }
     return sum;
 }

@@ -137,7 +137,7 @@ fn wet_surface(dry: Surface, wetness: f32, along: vec3f, relief: WetRelief) -> S
     let bare = (1.0 - film) * (1.0 - film) * (1.0 - film);
     let coated = (1.0 - bare) * (1.0 - clamp((strongest - WET_DIELECTRIC) / (WET_METAL - WET_DIELECTRIC), 0.0, 1.0));
     let smooth_alpha = WET_SMOOTH_ALPHA + (WET_POROUS_ALPHA - WET_SMOOTH_ALPHA) * dry.porosity;
-    let coat = sqrt(smooth_alpha * smooth_alpha + relief.variance * dry.porosity);
+    let coat = sqrt(smooth_alpha * smooth_alpha + relief.variance * dry.porosity + dry.variance);
     let alpha = dry.roughness * dry.roughness;
     surface.roughness = sqrt(alpha + (min(coat, alpha) - alpha) * coated);
     surface.film = 1.0 - bare;

@@ -12,7 +12,7 @@ struct SplashFrame {
     half_time: f32,
     // Time of the picture from the middle of the slice, s.
     now: f32,
-    // Splash parameter of a drop of 1 m at 1 m/s.
+    // Root of the Weber number of a drop of 1 m at 1 m/s.
     strength: f32,
     // Radius of the crown of a drop of 1 m, m.
     radius: f32,
@@ -28,9 +28,9 @@ struct SplashFrame {
 
 @group(0) @binding(0) var<uniform> splash_frame: SplashFrame;
 
-// Splash parameter of a drop that meets a surface with a speed toward it.
+// Root of the Weber number of a drop that meets a surface with a speed toward it.
 fn splash_parameter(strength: f32, diameter: f32, speed: f32) -> f32 {
-    return strength * speed * sqrt(sqrt(speed)) * sqrt(diameter * sqrt(diameter));
+    return strength * speed * sqrt(diameter);
 }
 
 // Half the height of a crown at a stage, in its radius.

@@ -328,12 +328,15 @@ fn scene_that(shines: bool, lamps: &[LightSource]) -> SceneData {
     let color = builder.add_slot(color);
     let data = builder.texture(32, 16, &noise, TextureUse::Data);
     let data = builder.add_slot(data);
+    let slopes: Vec<[u8; 4]> = noise.iter().map(|&[r, g, b, a]| [r, g, 128 + b / 2, a]).collect();
+    let relief = builder.texture(32, 16, &slopes, TextureUse::Normals);
+    let relief = builder.add_slot(relief);
     let plain = MaterialLook::default();
     let looks = [
         MaterialLook { maps: [Some(color), None, None, None, None, None], roughness: 0.6, ..plain },
         MaterialLook { metallic: 1.0, roughness: 0.25, base_color: [0.9, 0.6, 0.3, 1.0], ..plain },
         MaterialLook {
-            maps: [None, Some(data), Some(data), None, Some(data), None],
+            maps: [None, Some(data), Some(relief), None, Some(data), None],
             roughness: 0.8,
             ..plain
         },

@@ -2,6 +2,8 @@
 
 The file is read here anew: triangles, metallic-roughness materials with textures of base color, point lamps. Surfaces have glTF's own
 reflection (gltf_bsdf.py), so that what differs is the light and not the material.
+
+Without `--ours` it makes the reference alone, which a later call with `--keep` takes: for a machine that has a GPU, and no `downpour`.
 """
 
 import argparse
@@ -13,14 +15,18 @@ import numpy as np
 
 # Bounces; the last of them give less than a thousandth in the whitest of the rooms.
 DEPTH = 24
-# Batches, whose scatter is the reference's own noise.
+# Batches, whose scatter is the reference's own noise: at least so many, an even number of them, of so many samples at most.
 BATCHES = 4
+BATCH_SAMPLES = 3000
 
 
 def arguments():
     parser = argparse.ArgumentParser()
-    for name in ("scene", "sky", "ours", "beside", "reference"):
+    for name in ("scene", "sky", "reference"):
         parser.add_argument(f"--{name}", required=True)
+    for name in ("ours", "beside"):
+        parser.add_argument(f"--{name}", default="")
+    parser.add_argument("--variant", default="llvm_ad_rgb")
     parser.add_argument("--lamps", default="")
     for name in ("eye-x", "eye-y", "eye-z", "at-x", "at-y", "at-z", "fov", "scale"):
         parser.add_argument(f"--{name}", required=True, type=float)
@@ -90,31 +96,44 @@ def surfaces(scene, given):
 
 def render(scene, given):
     path = mi.load_dict({"type": "path", "max_depth": DEPTH, "rr_depth": 6})
-    samples = max(int(given.path_samples) // BATCHES, 1)
-    return [np.array(mi.render(scene, integrator=path, spp=samples, seed=seed)) for seed in range(BATCHES)]
+    pairs = max(BATCHES // 2, -(-int(given.path_samples) // (2 * BATCH_SAMPLES)))
+    samples = max(int(given.path_samples) // (2 * pairs), 1)
+    return [np.array(mi.render(scene, integrator=path, spp=samples, seed=seed)) for seed in range(2 * pairs)]
+
+
+def halves_of(given, scene):
+    """Means of both halves of the samples: kept ones, or new ones, which are then kept."""
+    import reference
+
+    kept = Path(given.reference)
+    other = kept.with_suffix(".half.exr")
+    if given.keep > 0 and kept.exists() and other.exists():
+        both, one = reference.linear(str(kept)), reference.linear(str(other))
+        return [one, 2.0 * both - one]
+    batches = render(scene, given)
+    halves = [np.mean(batches[k::2], axis=0) for k in range(2)]
+    for picture, file in ((np.mean(halves, axis=0), kept), (halves[0], other)):
+        mi.Bitmap(picture.astype(np.float32)).write(str(file))
+    return halves
 
 
 def main(given):
-    mi.set_variant("llvm_ad_rgb")
+    mi.set_variant(given.variant)
     mi.set_log_level(mi.LogLevel.Error)
-    import compare
     import gltf_bsdf  # noqa: F401  makes the material known
     import reference
 
     scene = world(given)
+    halves = halves_of(given, scene)
+    if not given.ours:
+        return
+    import compare
+
+    theirs = np.mean(halves, axis=0)
     within = surfaces(scene, given)
-    kept = Path(given.reference)
-    if given.keep > 0 and kept.exists():
-        theirs = reference.linear(given.reference)
-        batches = [theirs] * 2
-    else:
-        batches = render(scene, given)
-        theirs = np.mean(batches, axis=0)
-        mi.Bitmap(theirs.astype(np.float32)).write(given.reference)
     ours = reference.linear(given.ours)
     factor = compare.exposure(theirs, within)
     mean = compare.mean_luminance(theirs, within)
-    halves = [np.mean(batches[k::2], axis=0) for k in range(2)]
     values = {
         "flip": compare.mean_flip(theirs, ours, within, factor),
         "luminance": compare.mean_luminance(ours, within) / mean - 1.0,

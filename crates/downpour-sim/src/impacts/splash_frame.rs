@@ -30,7 +30,7 @@ pub struct SplashFrame {
     pub half_time: f32,
     /// Time of the picture from the middle of the slice, s.
     pub now: f32,
-    /// Splash parameter of a drop of 1 m at 1 m/s.
+    /// Root of the Weber number of a drop of 1 m at 1 m/s.
     pub strength: f32,
     /// Radius of the crown of a drop of 1 m, m.
     pub radius: f32,
@@ -61,10 +61,10 @@ impl SplashFrame {
     }
 }
 
-/// Splash parameter of a drop that meets a surface with a speed toward it, in m and m/s.
+/// Root of the Weber number of a drop that meets a surface with a speed toward it, in m and m/s.
 #[must_use]
 pub fn splash_parameter(strength: f32, diameter: f32, speed: f32) -> f32 {
-    strength * speed * speed.sqrt().sqrt() * (diameter * diameter.sqrt()).sqrt()
+    strength * speed * diameter.sqrt()
 }
 
 /// Half the height of a crown at a stage, in its radius.
@@ -138,7 +138,7 @@ mod tests {
         let law = SplashLaw::new(FILM_M, 20.0).unwrap();
         for (diameter, speed) in [(0.7e-3, 3.1), (1.3e-3, 5.0), (2.0e-3, 6.5), (5.0e-3, 9.1)] {
             let found = splash_parameter(law.strength() as f32, diameter as f32, speed as f32);
-            assert!((f64::from(found) / law.parameter(diameter, speed) - 1.0).abs() < 1.0e-5, "{diameter}");
+            assert!((f64::from(found) / law.weber_root(diameter, speed) - 1.0).abs() < 1.0e-5, "{diameter}");
             let expected = law.splash(diameter, speed).map(|splash| splash.radius_m);
             let found = law.unit_radius() * diameter * diameter.sqrt().sqrt();
             assert!(expected.is_none_or(|radius| (found / radius - 1.0).abs() < 1.0e-9), "{diameter}");

@@ -108,6 +108,7 @@ pub(super) fn path_water_surface(start: Vec3, along: Vec3, distance: f32, ripple
         bend: 0.0,
         porosity: 0.0,
         film: 0.0,
+        variance: 0.0,
     }
 }
 
