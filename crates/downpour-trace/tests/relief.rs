@@ -86,8 +86,9 @@ fn waves(deviation: f32) -> Vec<Vec2> {
 fn a_footprint_holds_the_variance_of_the_slopes() -> Outcome {
     let steep = Vec2::new(0.5, -0.25);
     let other = Vec2::new(-0.1, 0.35);
-    let board: Vec<Vec2> =
-        (0..EDGE * EDGE).map(|i| if (i % EDGE + i / EDGE) % 2 == 0 { steep } else { other }).collect();
+    let board: Vec<Vec2> = (0..EDGE * EDGE)
+        .map(|i| if (i % EDGE + i / EDGE).is_multiple_of(2) { steep } else { other })
+        .collect();
     for scale in [1.0, 0.5] {
         let scene = ground(&board, scale, 0.3, &[]);
         // The middle of a texel of the first slope.
@@ -117,7 +118,13 @@ fn a_footprint_holds_the_variance_of_the_slopes() -> Outcome {
 #[test]
 fn flat_stones_with_steep_joints_have_a_narrow_lobe() -> Outcome {
     let stones: Vec<Vec2> = (0..EDGE * EDGE)
-        .map(|i| if i % 10 == 0 { Vec2::new(if i % 20 == 0 { 1.5 } else { -1.5 }, 0.0) } else { Vec2::ZERO })
+        .map(|i| {
+            if i.is_multiple_of(10) {
+                Vec2::new(if i.is_multiple_of(20) { 1.5 } else { -1.5 }, 0.0)
+            } else {
+                Vec2::ZERO
+            }
+        })
         .collect();
     let scene = ground(&stones, 1.0, 0.2, &[]);
     let hit = scene.surface_hit(Vec3::Y, -Vec3::Y, 1.0e-3, BVH_FAR).ok_or("no ground")?;
