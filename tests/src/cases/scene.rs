@@ -10,7 +10,7 @@ use downpour_shaders::render::path::PATH_LATTICE;
 use downpour_shaders::render::scatter::SCATTER;
 use downpour_shaders::render::scene::{
     EMITTER, SCENE, SCENE_BLENDED, SCENE_DOUBLE_SIDED, SCENE_MASKED, SCENE_UNLIT, SKYLIGHT, SKYLIGHT_KERNEL,
-    SPACING, TEXTURE, TRACE_KERNEL, TRACE_SAMPLE_KERNEL,
+    SPACING, SURFACE, TEXTURE, TRACE_KERNEL, TRACE_SAMPLE_KERNEL,
 };
 use downpour_trace::brdf::{
     brdf_direct, brdf_distribution, brdf_environment, brdf_fresnel, brdf_masking, brdf_visibility,
@@ -28,8 +28,9 @@ use downpour_trace::scatter::{
 use downpour_trace::scene::{SceneView, scene_alpha, scene_disk, scene_softness};
 use downpour_trace::sky_light::SkyLight;
 use downpour_trace::skylight::{skylight_film, skylight_hat, skylight_lobe, skylight_radius};
-use downpour_trace::texture::{texture_taps, texture_wrap};
-use glam::{Affine3A, Vec2, Vec3};
+use downpour_trace::surface::{surface_roughness, surface_turn};
+use downpour_trace::texture::{texture_taps, texture_variance, texture_wrap};
+use glam::{Affine3A, Vec2, Vec3, Vec4};
 
 use crate::Domain::{AnyWord, Below, Fixed, Made, OneOf, Uniform, Unit3};
 use crate::function::Run;
@@ -120,6 +121,32 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 [found.line.x, found.line.y, found.taps, found.texel].words()
             },
         ),
+        FunctionCase::new(
+            "texture_variance",
+            &TEXTURE,
+            &[
+                Uniform(-1.0, 1.0),
+                Uniform(-1.0, 1.0),
+                Uniform(0.0, 4.0),
+                Uniform(-1.0, 1.0),
+                Uniform(-2.0, 2.0),
+                Uniform(-2.0, 2.0),
+                Uniform(-2.0, 2.0),
+                Uniform(-2.0, 2.0),
+            ],
+            Tol::absolute(1.0e-5, "differences and products of numbers up to 4"),
+            |a| texture_variance(Vec4::from(a.f32s()), Vec2::from(a.f32s()), Vec2::from(a.f32s())).words(),
+        ),
+        FunctionCase::new(
+            "surface_turn",
+            &SURFACE,
+            &[Uniform(0.0, 20.0), Uniform(0.0, 0.1), Uniform(-1.0, 1.0)],
+            FORMULA,
+            |a| surface_turn(a.f32(), a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new("surface_roughness", &SURFACE, &[fraction, Uniform(0.0, 2.0)], FORMULA, |a| {
+            surface_roughness(a.f32(), a.f32()).words()
+        }),
         FunctionCase::new("brdf_masking", &BRDF, &[alpha, cosine], FORMULA, |a| {
             brdf_masking(a.f32(), a.f32()).words()
         }),
