@@ -1,6 +1,7 @@
 //! A scene being put together: meshes, materials, textures and lamps become the buffers of [`data`](crate::data).
 
 mod lamp_glass;
+mod relief;
 mod texture;
 
 use std::collections::BTreeMap;

@@ -44,7 +44,7 @@ pub struct Surface {
     pub porosity: f32,
     /// Fraction that a film of water covers.
     pub film: f32,
-    /// Variance of the slopes of its relief that the ray's footprint does not resolve; the roughness allows for it.
+    /// Square of the alpha by which its roughness allows for what the ray's footprint does not resolve of its relief and of its bend.
     pub variance: f32,
 }
 

@@ -29,7 +29,7 @@ struct Surface {
     porosity: f32,
     // Fraction that a film of water covers.
     film: f32,
-    // Variance of the slopes of its relief that the ray's footprint does not resolve; the roughness allows for it.
+    // Square of the alpha by which its roughness allows for what the ray's footprint does not resolve of its relief and of its bend.
     variance: f32,
 }
 
