@@ -69,6 +69,7 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
         render::specimen::MODULES,
         render::spray::MODULES,
         render::table::MODULES,
+        render::translucent::MODULES,
         render::wet::MODULES,
         sim::collision::MODULES,
         sim::enter::MODULES,

@@ -22,4 +22,5 @@ pub mod specimen;
 pub mod spray;
 pub mod table;
 pub mod tone;
+pub mod translucent;
 pub mod wet;

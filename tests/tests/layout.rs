@@ -95,7 +95,7 @@ fn hosts() -> Vec<Host> {
             eye, width, right, height, up, seed, forward, pixel_angle),
         host!(RenderFrame as "RenderFrame" in &render::scene::DATA,
             camera, grid, slots, lights, light_count, sky_rays, first_row, nearest, ray_fraction, projection, suns_out, puddles, puddle_count, pane,
-            turn, wetness, emitters, ray_spacing, ray_column, ray_row, glazing, impostors, impostor_edge, unused_a, unused_b,
+            turn, wetness, emitters, ray_spacing, ray_column, ray_row, glazing, impostors, impostor_edge, translucent, unused,
             sky_levels, sky_irradiance),
         host!(RenderCorner as "RenderCorner" in &render::scene::DATA, normal, material, tangent, uv, color),
         host!(TraceSlot as "TraceSlot" in &render::scene::TRACE, position, normal, light, look, factor),

@@ -344,7 +344,11 @@ fn document(
     }
     let mut used = vec!["KHR_mesh_quantization"];
     let text = materials.iter().map(Value::to_string).collect::<String>();
-    for extension in ["KHR_materials_emissive_strength", "KHR_materials_transmission"] {
+    for extension in [
+        "KHR_materials_diffuse_transmission",
+        "KHR_materials_emissive_strength",
+        "KHR_materials_transmission",
+    ] {
         if text.contains(extension) {
             used.push(extension);
         }

@@ -113,6 +113,8 @@ impl SceneBuilder {
             (&material.emissive_texture, false),
             (&material.occlusion_texture, false),
             (&material.transmission_texture, false),
+            (&material.diffuse_transmission_texture, false),
+            (&material.diffuse_transmission_color_texture, false),
         ];
         let maps = textures.map(|(used, is_relief)| {
             used.as_ref().and_then(|used| self.add_texture_use(scene, used, is_relief, stored))
@@ -129,6 +131,8 @@ impl SceneBuilder {
                 | if material.double_sided { SCENE_DOUBLE_SIDED } else { 0 }
                 | if material.unlit { SCENE_UNLIT } else { 0 },
             transmission: material.transmission,
+            diffuse_transmission: material.diffuse_transmission,
+            diffuse_transmission_color: material.diffuse_transmission_color.into(),
             ior: material.ior,
             porosity: material.porosity,
             maps,

@@ -203,6 +203,7 @@ impl SceneBuilder {
             wetness: 0,
             glazing: 0,
             emitters: 0,
+            is_translucent: self.materials.iter().any(|material| material.diffuse_transmission > 0.0),
             sky: Arc::new(sky.texels.clone()),
             sky_levels: sky.levels,
             sky_irradiance: sky.irradiance,

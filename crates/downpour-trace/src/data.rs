@@ -100,10 +100,10 @@ pub struct RenderFrame {
     pub impostors: u32,
     /// Edge coefficient of reflections from that buffer: the paper's f0.
     pub impostor_edge: f32,
+    /// 1 if materials transmit light diffusely, else 0.
+    pub translucent: u32,
     /// Not used.
-    pub unused_a: u32,
-    /// Not used.
-    pub unused_b: u32,
+    pub unused: u32,
     /// Width, height and first texel of each level of the sky.
     pub sky_levels: [[u32; 4]; SCENE_SKY_LEVELS as usize],
     /// Irradiance of the sky over pi as spherical harmonics of degree 2.
@@ -141,6 +141,8 @@ pub struct SceneData {
     pub glazing: u32,
     /// Word of the texels where the tree of surfaces that shine begins; 0: none shine.
     pub emitters: u32,
+    /// True if materials transmit light diffusely ([`translucent`](crate::translucent)).
+    pub is_translucent: bool,
     /// Texels of all levels of the sky.
     pub sky: Arc<Vec<[f32; 4]>>,
     /// Width, height and first texel of each level of the sky.
@@ -306,8 +308,8 @@ impl RenderFrame {
             glazing: scene.glazing,
             impostors: scene.impostors.as_ref().map_or(0, |list| list.billboards.len() as u32 + 1),
             impostor_edge: scene.impostors.as_ref().map_or(0.0, |list| list.edge),
-            unused_a: 0,
-            unused_b: 0,
+            translucent: u32::from(scene.is_translucent),
+            unused: 0,
             sky_levels: scene.sky_levels,
             sky_irradiance: scene.sky_irradiance,
         })

@@ -84,6 +84,11 @@ mod trace;
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 pub mod trace;
+#[cfg(not(feature = "parity"))]
+mod translucent;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
+pub mod translucent;
 pub mod truth;
 #[cfg(not(feature = "parity"))]
 mod wet;

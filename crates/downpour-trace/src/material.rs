@@ -32,12 +32,16 @@ pub struct MaterialLook {
     pub flags: u32,
     /// Fraction of light that passes a thin dielectric.
     pub transmission: f32,
+    /// Fraction of the light not reflected by the gloss that leaves the surface on its other side, scattered evenly.
+    pub diffuse_transmission: f32,
+    /// Color of that light.
+    pub diffuse_transmission_color: [f32; 3],
     /// Refractive index.
     pub ior: f32,
     /// Fraction of the surface that soaks up rain and darkens; `None`: by roughness and metalness.
     pub porosity: Option<f32>,
-    /// Slots of base color, metallic-roughness, normal, emission, occlusion, transmission.
-    pub maps: [Option<u32>; 6],
+    /// Slots of base color, metallic-roughness, normal, emission, occlusion, transmission, diffuse transmission and its color.
+    pub maps: [Option<u32>; 8],
 }
 
 impl Default for MaterialLook {
@@ -53,9 +57,11 @@ impl Default for MaterialLook {
             alpha_cutoff: 0.5,
             flags: 0,
             transmission: 0.0,
+            diffuse_transmission: 0.0,
+            diffuse_transmission_color: [1.0; 3],
             ior: 1.5,
             porosity: None,
-            maps: [None; 6],
+            maps: [None; 8],
         }
     }
 }
@@ -70,6 +76,7 @@ impl MaterialLook {
     pub(crate) fn rows(&self, slots: u32) -> [[u32; 4]; MATERIAL_ROWS] {
         let bits = |v: [f32; 4]| v.map(f32::to_bits);
         let [r, g, b] = self.emission;
+        let [red, green, blue] = self.diffuse_transmission_color;
         let map = |k: usize| self.maps[k].map_or(SCENE_NONE, |slot| slots + slot * SCENE_SLOT_ROWS);
         [
             bits(self.base_color),
@@ -82,7 +89,8 @@ impl MaterialLook {
                 self.porosity.unwrap_or(-1.0).to_bits(),
             ],
             [map(0), map(1), map(2), map(3)],
-            [map(4), map(5), SCENE_NONE, SCENE_NONE],
+            [map(4), map(5), map(6), map(7)],
+            bits([red, green, blue, self.diffuse_transmission]),
         ]
     }
 }
@@ -139,14 +147,18 @@ pub struct RenderMaterial {
     pub flags: u32,
     /// Fraction of light that passes a thin dielectric.
     pub transmission: f32,
+    /// Fraction of light that leaves it on its other side, scattered evenly.
+    pub diffuse_transmission: f32,
+    /// Color of that light.
+    pub diffuse_transmission_color: Vec3,
     /// Refractive index.
     pub ior: f32,
     /// Porosity; below 0: by the roughness.
     pub porosity: f32,
     /// Rows of the slots of base color, metallic-roughness, normal and emission; `SCENE_NONE` for none.
     pub maps: [u32; 4],
-    /// Rows of the slots of occlusion and transmission.
-    pub more: [u32; 2],
+    /// Rows of the slots of occlusion, transmission, diffuse transmission and its color.
+    pub more: [u32; 4],
 }
 
 /// A texture slot as the shaders read it. Twin of the WGSL struct of the same name.
@@ -170,7 +182,7 @@ impl SceneData {
         let first = (index * SCENE_MATERIAL_ROWS) as usize;
         let rows = &self.table[first..first + MATERIAL_ROWS];
         let numbers = |k: usize| Vec4::from(rows[k].map(f32::from_bits));
-        let (glow, look) = (numbers(1), numbers(2));
+        let (glow, look, through) = (numbers(1), numbers(2), numbers(6));
         let [flags, transmission, ior, porosity] = rows[3];
         RenderMaterial {
             base: numbers(0),
@@ -182,10 +194,12 @@ impl SceneData {
             cutoff: look.w,
             flags,
             transmission: f32::from_bits(transmission),
+            diffuse_transmission: through.w,
+            diffuse_transmission_color: through.truncate(),
             ior: f32::from_bits(ior),
             porosity: f32::from_bits(porosity),
             maps: rows[4],
-            more: [rows[5][0], rows[5][1]],
+            more: rows[5],
         }
     }
 

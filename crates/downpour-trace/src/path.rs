@@ -30,7 +30,7 @@ use downpour_shaders::bvh::BVH_FAR;
 use downpour_shaders::render::path::{
     PATH_BETWEEN, PATH_BOUNCES, PATH_CANDIDATES, PATH_CURVED, PATH_CURVED_FRACTION, PATH_CURVED_PART,
     PATH_LATER_FRACTION, PATH_MIRROR_LAMPS, PATH_OCCLUSION, PATH_OPEN, PATH_OTHER, PATH_PLAIN_GLOSS,
-    PATH_SAME_FACET, PATH_SAME_PLANE, PATH_SECONDARY_ROUGHNESS, PATH_SHINES,
+    PATH_SAME_FACET, PATH_SAME_PLANE, PATH_SECONDARY_ROUGHNESS, PATH_SHINES, PATH_SIDE,
 };
 use downpour_shaders::render::puddle_water::{
     PUDDLE_WATER_DOWN, PUDDLE_WATER_INDEX, PUDDLE_WATER_MATERIAL, PUDDLE_WATER_RAYS, PUDDLE_WATER_RIPPLED,
@@ -48,6 +48,9 @@ use crate::scatter::{ScatterRay, scatter_chance, scatter_draw, scatter_mirror};
 use crate::scene::water::{PuddleWater, puddle_water_above, puddle_water_refracted};
 use crate::scene::{SceneAsked, SceneView};
 use crate::surface::Surface;
+use crate::translucent::{
+    translucent_behind, translucent_chance, translucent_drawn, translucent_is, translucent_part,
+};
 use crate::wet::{wet_relief, wet_surface};
 pub use downpour_render::path_lattice::{path_lattice_numbers, path_lattice_words};
 use draw::{path_onward, path_replaced, path_water_fraction, path_water_ray};
@@ -346,7 +349,14 @@ impl SceneView<'_> {
                 let footprint = Some(cone * hit.distance);
                 let spared = spared && told;
                 let asked = SceneAsked { draws: 0, numbers, standoff: 0.0, under: depth, footprint, spared };
-                let lamplight = self.scene_direct(&found, -towards, &asked);
+                let mut lamplight = self.scene_direct(&found, -towards, &asked);
+                if translucent_is(&found) {
+                    let behind = self.scene_direct(&translucent_behind(&found), towards, &asked);
+                    let part = translucent_part(&found);
+                    lamplight.lit += behind.lit;
+                    lamplight.glow = lamplight.glow * (Vec3::ONE - part) + behind.glow * part;
+                    lamplight.is_soft |= behind.is_soft;
+                }
                 direct = if left_out { Vec3::ZERO } else { found.emission } + lamplight.lit;
                 // What is told apart goes with the rest of the light on the diffuse base, which has the material's occlusion.
                 (glow, is_soft) = (lamplight.glow / found.occlusion.max(PATH_OCCLUSION), lamplight.is_soft);
@@ -451,7 +461,8 @@ impl SceneView<'_> {
                         (PathLeave::Mirror, _) => scatter_mirror(&at, view),
                         _ => self.path_draw(&at, view, plan, leaves, is_mirror, numbers),
                     };
-                    from = at.position + at.facet * frame.nearest;
+                    let behind = translucent_is(&at) && at.facet.dot(next.along) < 0.0;
+                    from = at.position + at.facet * if behind { -frame.nearest } else { frame.nearest };
                     match leaves {
                         PathLeave::First => {
                             if under && is_mirror {
@@ -491,6 +502,12 @@ impl SceneView<'_> {
                     }
                 }
                 let mut found = path_secondary(&found, ray.roughness);
+                let mut seen_from = -ray.along;
+                if translucent_is(&found) {
+                    let facet = found.facet;
+                    found = translucent_drawn(&found, (numbers[3] * PATH_SIDE).fract());
+                    seen_from *= found.facet.dot(facet).signum();
+                }
                 let lamps = if ray.roughness < PATH_SECONDARY_ROUGHNESS { PATH_MIRROR_LAMPS } else { 1 };
                 let standoff = hit.distance * ray.width * 0.5;
                 // Surfaces that shine are lights: rays see them in a gloss only.
@@ -511,7 +528,7 @@ impl SceneView<'_> {
                         footprint: None,
                         spared: false,
                     };
-                    lit = self.scene_direct(&found, -ray.along, &asked).lit;
+                    lit = self.scene_direct(&found, seen_from, &asked).lit;
                 }
                 let cover = path_cover(&found);
                 light = light.path_accumulated(&ray, lit * cover, of_shown);
@@ -552,7 +569,7 @@ impl SceneView<'_> {
                     ray.mirror *= open;
                     from = found.position;
                 }
-                (at, view) = (found, -ray.along);
+                (at, view) = (found, seen_from);
             }
         }
         light
@@ -568,7 +585,10 @@ impl SceneView<'_> {
         is_mirror: bool,
         numbers: [f32; 4],
     ) -> ScatterRay {
-        let [mut a, mut b, number, _] = numbers;
+        let [mut a, mut b, number, other] = numbers;
+        let (mut at, mut view) = (*at, view);
+        // Factors of the light on the diffuse base, and in the gloss.
+        let (mut of_side, mut of_gloss) = (Vec3::ONE, 1.0);
         let mut gloss = Vec3::ONE;
         let mut chance = scatter_chance(at.diffuse, at.normal_reflectance);
         let (mut fraction, mut weight) = (PATH_LATER_FRACTION, 1.0);
@@ -579,20 +599,33 @@ impl SceneView<'_> {
             gloss = plan.gloss;
             chance = if is_mirror { 1.0 } else { plan.chance };
             fraction = plan.fraction;
+            if translucent_is(&at) && !is_mirror {
+                // One side is drawn, with the gloss for the viewer's.
+                let behind = (1.0 - chance) * translucent_chance(&at);
+                let part = translucent_part(&at);
+                if (other * PATH_OTHER).fract() < behind {
+                    of_side = part / behind;
+                    (at, view, chance) = (translucent_behind(&at), -view, 0.0);
+                } else {
+                    of_side = (Vec3::ONE - part) / (1.0 - behind);
+                    of_gloss = 1.0 / (1.0 - behind);
+                    chance *= of_gloss;
+                }
+            }
             if is_mirror && !plan.kept {
                 // Few rays: far out in the lobe they would be noise.
                 (fraction, a) = (PATH_CURVED_FRACTION, a * PATH_CURVED_PART);
             }
             if a >= chance {
                 let own = (a - chance) / (1.0 - chance);
-                let (numbers, factor) = self.path_candidate(at, own, b, number, fraction);
+                let (numbers, factor) = self.path_candidate(&at, own, b, number, fraction);
                 (a, b, weight) = (chance + numbers.x * (1.0 - chance), numbers.y, factor);
                 fraction /= PATH_CANDIDATES as f32;
             }
         }
-        let mut ray = scatter_draw(self.data, at, view, gloss, chance, [a, b], fraction);
-        ray.diffuse *= weight;
-        ray.mirror *= weight;
+        let mut ray = scatter_draw(self.data, &at, view, gloss, chance, [a, b], fraction);
+        ray.diffuse *= of_side * weight;
+        ray.mirror *= of_gloss * weight;
         ray
     }
 
@@ -618,7 +651,7 @@ impl SceneView<'_> {
         let mut mirror = light.mirror / of_gloss.max(1) as f32;
         let in_mirror = || self.data.sky_cone(mirrored, scatter_mirror(&surface, -towards).width);
         if plan.spared {
-            base = self.data.sky_irradiance(surface.normal) + glow;
+            base = self.data.translucent_sky(&surface) + glow;
             if plan.kept {
                 mirror = in_mirror();
             }
@@ -628,7 +661,7 @@ impl SceneView<'_> {
             mirror += glow;
         }
         if plan.mirrors + plan.rays == 0 && !plan.spared {
-            base = self.data.sky_irradiance(surface.normal) + glow;
+            base = self.data.translucent_sky(&surface) + glow;
             mirror = in_mirror();
         } else if plan.mirrors == 0 && plan.chance == 0.0 && !(plan.spared && plan.kept) {
             // Too faint to trace rays for it.

@@ -193,6 +193,7 @@ mod tests {
             porosity: 0.0,
             film: 0.0,
             variance: 0.0,
+            diffuse_transmission: Vec3::ZERO,
         }
     }
 

@@ -46,6 +46,8 @@ pub struct Surface {
     pub film: f32,
     /// Square of the alpha by which its roughness allows for what the ray's footprint does not resolve of its relief and of its bend.
     pub variance: f32,
+    /// Fraction of the light from behind that it scatters toward the viewer, as leaves do.
+    pub diffuse_transmission: Vec3,
 }
 
 /// Rain falls through what is not seen: where a masked material is below its cutoff, or one that is blended has no alpha. Where
@@ -268,6 +270,14 @@ impl SceneData {
         let f0 = if unlit { 0.0 } else { dielectric * dielectric };
         let metallic = if unlit { 0.0 } else { metallic };
         let color = base.truncate();
+        let (mut behind, mut reflected) = (Vec3::ZERO, 1.0 - metallic);
+        if self.is_translucent && !unlit {
+            let texture = self.surface_texture(more[2], uv, &footprint);
+            let part = (material.diffuse_transmission * texture.w).clamp(0.0, 1.0);
+            let tint = self.surface_texture(more[3], uv, &footprint).truncate();
+            behind = material.diffuse_transmission_color * tint * (part * reflected);
+            reflected *= 1.0 - part;
+        }
         Surface {
             position: origin + direction * hit.distance,
             alpha: base.w,
@@ -275,7 +285,7 @@ impl SceneData {
             roughness: surface_roughness(roughness, variance),
             facet,
             occlusion: occlusion.clamp(0.0, 1.0),
-            diffuse: color * (1.0 - metallic),
+            diffuse: color * reflected,
             flags,
             normal_reflectance: Vec3::splat(f0) * (1.0 - metallic) + color * metallic,
             transmission: transmission.clamp(0.0, 1.0) * (1.0 - metallic),
@@ -284,6 +294,7 @@ impl SceneData {
             porosity: surface_porosity(material.porosity, flags, roughness, metallic),
             film: 0.0,
             variance,
+            diffuse_transmission: behind,
         }
     }
 }

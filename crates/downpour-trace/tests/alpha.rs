@@ -20,7 +20,7 @@ fn roofed(flags: u32, alphas: [u8; 2]) -> SceneData {
     let texels: Vec<[u8; 4]> = (0..64).map(|i| [255, 255, 255, alphas[i % 8 / 4]]).collect();
     let texture = builder.texture(8, 8, &texels, TextureUse::Color);
     let texture = builder.add_slot(texture);
-    let maps = [Some(texture), None, None, None, None, None];
+    let maps = [Some(texture), None, None, None, None, None, None, None];
     let roof = builder.add_material(MaterialLook { flags, maps, ..MaterialLook::default() });
     let corners = [(-1.0f32, -1.0f32), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
     for (material, height, half) in [(ground, 0.0, 4.0), (roof, 3.0, 2.0)] {

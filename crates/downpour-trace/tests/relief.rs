@@ -39,7 +39,7 @@ fn ground(slopes: &[Vec2], scale: f32, roughness: f32, lights: &[LightSource]) -
         base_color: [0.0, 0.0, 0.0, 1.0],
         roughness,
         normal_scale: scale,
-        maps: [None, None, Some(map), None, None, None],
+        maps: [None, None, Some(map), None, None, None, None, None],
         ..MaterialLook::default()
     });
     let positions =

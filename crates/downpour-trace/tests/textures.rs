@@ -33,7 +33,7 @@ fn ground(texels: &[f32], coordinates: Affine2, second: bool) -> SceneData {
     slot.offset = back.translation.to_array();
     slot.uv_set = second.into();
     let map = builder.add_slot(slot);
-    let maps = [Some(map), None, None, None, None, None];
+    let maps = [Some(map), None, None, None, None, None, None, None];
     let material = builder.add_material(MaterialLook { maps, ..MaterialLook::default() });
     let corners = [(-1.0f32, -1.0f32), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
     let positions = corners.map(|(x, z)| [x * 256.0, 0.0, z * 256.0]);

@@ -411,7 +411,7 @@ fn drops_fall_through_the_holes_of_obstacles() {
     let slot = builder.texture(8, 1, &texels, TextureUse::Data);
     let slot = builder.add_slot(slot);
     let whole = builder.add_material(MaterialLook::default());
-    let maps = [Some(slot), None, None, None, None, None];
+    let maps = [Some(slot), None, None, None, None, None, None, None];
     let cut = builder.add_material(MaterialLook { flags: SCENE_MASKED, maps, ..MaterialLook::default() });
     let order = [0, 1, 2, 0, 2, 3];
     let [a, b, c, d] = [ground[0][0], ground[0][1], ground[0][2], ground[1][2]];

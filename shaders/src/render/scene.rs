@@ -39,7 +39,7 @@ shared_constants! {
     /// Numbers of the scene's tables and rays.
     SCENE_CONSTANTS at "render/scene constants" {
         /// Rows of a material in the table.
-        SCENE_MATERIAL_ROWS: u32 = 6;
+        SCENE_MATERIAL_ROWS: u32 = 7;
         /// Rows of a texture slot.
         SCENE_SLOT_ROWS: u32 = 3;
         /// Rows of a light.

@@ -43,8 +43,9 @@ struct RenderFrame {
     impostors: u32,
     // The paper's f0 of reflections from that buffer.
     impostor_edge: f32,
-    unused_a: u32,
-    unused_b: u32,
+    // 1 if materials transmit light diffusely.
+    translucent: u32,
+    unused: u32,
     // Width, height and first texel of each level of the sky.
     sky_levels: array<vec4u, SCENE_SKY_LEVELS>,
     // Irradiance of the sky over pi as spherical harmonics of degree 2.

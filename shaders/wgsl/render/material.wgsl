@@ -1,6 +1,6 @@
 // Materials and textures. Rows of a material in the table: base color; emission and metalness; roughness, strength of normals and of
 // occlusion, cutoff; flags, transmission, index of refraction and
-// porosity; texture slots. Rows of a slot: 2 x 2 transform; offset, set of
+// porosity; texture slots; color and fraction of diffuse transmission. Rows of a slot: 2 x 2 transform; offset, set of
 // coordinates and flags; width, height, first texel and levels.
 // Twin: downpour_trace::material.
 
@@ -19,12 +19,17 @@ struct RenderMaterial {
     flags: u32,
     // Fraction of light that passes a thin dielectric.
     transmission: f32,
+    // Fraction of light that leaves it on its other side, scattered evenly.
+    diffuse_transmission: f32,
+    // Color of that light.
+    diffuse_transmission_color: vec3f,
     ior: f32,
     // Porosity; below 0: by the roughness.
     porosity: f32,
-    // Slots of base color, metallic-roughness, normal and emission, then of occlusion and transmission; SCENE_NONE for none.
+    // Slots of base color, metallic-roughness, normal and emission, then of occlusion, transmission, diffuse transmission and its color; SCENE_NONE for
+    // none.
     maps: vec4u,
-    more: vec2u,
+    more: vec4u,
 }
 
 // A texture as a material uses it.
@@ -48,9 +53,10 @@ fn material_load(index: u32) -> RenderMaterial {
     let look = bitcast<vec4f>(render_table[row + 2u]);
     let through = render_table[row + 3u];
     let optics = bitcast<vec3f>(through.yzw);
+    let behind = bitcast<vec4f>(render_table[row + 6u]);
     return RenderMaterial(
-        base, glow.rgb, glow.w, look.x, look.y, look.z, look.w, through.x, optics.x, optics.y, optics.z,
-        render_table[row + 4u], render_table[row + 5u].xy,
+        base, glow.rgb, glow.w, look.x, look.y, look.z, look.w, through.x, optics.x, behind.w, behind.rgb, optics.y,
+        optics.z, render_table[row + 4u], render_table[row + 5u],
     );
 }
 

@@ -135,7 +135,7 @@ fn path_max(color: vec3f) -> f32 {
 
 // Fraction of the light on its diffuse base that a surface gives back.
 fn path_albedo(surface: Surface) -> vec3f {
-    return surface.diffuse * ((1.0 - surface.transmission) * surface.occlusion);
+    return translucent_albedo(surface) * ((1.0 - surface.transmission) * surface.occlusion);
 }
 
 // Opacity of a surface.
@@ -165,6 +165,7 @@ fn path_gloss(surface: Surface, cosine: f32) -> vec3f {
 fn path_matte(surface: Surface, gloss: vec3f) -> Surface {
     var matte = surface;
     matte.diffuse = surface.diffuse * (vec3f(1.0) - gloss);
+    matte.diffuse_transmission = surface.diffuse_transmission * (vec3f(1.0) - gloss);
     matte.normal_reflectance = vec3f(0.0);
     matte.roughness = 1.0;
     matte.film = 0.0;
@@ -221,7 +222,7 @@ fn path_water_surface(start: vec3f, along: vec3f, distance: f32, ripple: vec3f) 
     // Beckmann's alpha squared is the variance of the slope.
     let roughness = clamp(sqrt(sqrt(ripple.z)), 0.0, 1.0);
     let position = start + along * distance;
-    return Surface(position, 1.0, normal, roughness, up, 1.0, none, 0u, vec3f(PUDDLE_WATER_NORMAL), 0.0, none, 0.0, 0.0, 0.0, 0.0);
+    return Surface(position, 1.0, normal, roughness, up, 1.0, none, 0u, vec3f(PUDDLE_WATER_NORMAL), 0.0, none, 0.0, 0.0, 0.0, 0.0, none);
 }
 
 // A ray that water mirrors: drawn from its ripples. Its weight is Fresnel's.
@@ -249,6 +250,7 @@ fn path_submerged(surface: Surface, clear: f32, scattering_albedo: vec3f) -> Sur
     var wet = surface;
     wet.diffuse = puddle_water_albedo(surface.diffuse * clear + scattering_albedo * (1.0 - clear));
     wet.normal_reflectance = puddle_water_reflectance(surface.normal_reflectance) * clear;
+    wet.diffuse_transmission = surface.diffuse_transmission * clear;
     wet.emission = surface.emission * clear;
     wet.film = 0.0;
     return wet;
@@ -328,9 +330,14 @@ fn path_ambient(surface: Surface, given: vec3f) -> vec3f {
 }
 
 // A ray drawn for a surface, which the ray before leaves as `leaves` says.
-fn path_draw(at: Surface, view: vec3f, plan: PathPlan, leaves: u32, is_mirror: bool, numbers: vec4f) -> ScatterRay {
+fn path_draw(surface: Surface, viewer: vec3f, plan: PathPlan, leaves: u32, is_mirror: bool, numbers: vec4f) -> ScatterRay {
+    var at = surface;
+    var view = viewer;
     var a = numbers.x;
     var b = numbers.y;
+    // Factors of the light on the diffuse base, and in the gloss.
+    var of_side = vec3f(1.0);
+    var of_gloss = 1.0;
     var gloss = vec3f(1.0);
     var chance = scatter_chance(at.diffuse, at.normal_reflectance);
     var fraction = PATH_LATER_FRACTION;
@@ -342,6 +349,21 @@ fn path_draw(at: Surface, view: vec3f, plan: PathPlan, leaves: u32, is_mirror: b
         gloss = plan.gloss;
         chance = select(plan.chance, 1.0, is_mirror);
         fraction = plan.fraction;
+        if translucent_is(at) && !is_mirror {
+            // One side is drawn, with the gloss for the viewer's.
+            let behind = (1.0 - chance) * translucent_chance(at);
+            let part = translucent_part(at);
+            if fract(numbers.w * PATH_OTHER) < behind {
+                of_side = part / behind;
+                at = translucent_behind(at);
+                view = -view;
+                chance = 0.0;
+            } else {
+                of_side = (vec3f(1.0) - part) / (1.0 - behind);
+                of_gloss = 1.0 / (1.0 - behind);
+                chance *= of_gloss;
+            }
+        }
         if is_mirror && !plan.kept {
             // Few rays: far out in the lobe they would be noise.
             fraction = PATH_CURVED_FRACTION;
@@ -357,8 +379,8 @@ fn path_draw(at: Surface, view: vec3f, plan: PathPlan, leaves: u32, is_mirror: b
         }
     }
     var ray = scatter_draw(at, view, gloss, chance, a, b, fraction);
-    ray.diffuse *= weight;
-    ray.mirror *= weight;
+    ray.diffuse *= of_side * weight;
+    ray.mirror *= of_gloss * weight;
     return ray;
 }
 
@@ -414,7 +436,7 @@ fn path_show(
     var mirror = light.mirror / f32(max(rays_of_gloss, 1u));
     let guessed = select(0u, 1u, plan.spared);
     if plan.spared {
-        base = sky_irradiance(surface.normal) + meeting.glow;
+        base = translucent_sky(surface) + meeting.glow;
         if plan.kept {
             mirror = sky_cone(mirrored, scatter_mirror(surface, -towards).width);
         }
@@ -424,7 +446,7 @@ fn path_show(
         mirror += meeting.glow;
     }
     if plan.mirrors + plan.rays == 0u && !plan.spared {
-        base = sky_irradiance(surface.normal) + meeting.glow;
+        base = translucent_sky(surface) + meeting.glow;
         mirror = sky_cone(mirrored, scatter_mirror(surface, -towards).width);
     } else if plan.mirrors == 0u && plan.chance == 0.0 && !(plan.spared && plan.kept) {
         // Too faint to trace rays for it.
@@ -508,7 +530,8 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     } else {
                         next = path_draw(at, view, meeting.plan, leaves, is_mirror, numbers);
                     }
-                    from_position = at.position + at.facet * render_frame.nearest;
+                    let behind = translucent_is(at) && dot(at.facet, next.along) < 0.0;
+                    from_position = at.position + at.facet * select(render_frame.nearest, -render_frame.nearest, behind);
                     nearest = render_frame.nearest;
                     if is_first {
                         if SCENE_WET && under && is_mirror {
@@ -583,6 +606,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                 }
                 // All lamps for the first surface; for others, some sampled lamps.
                 var lamps = 0u;
+                var seen_from = -ray.along;
                 var standoff = 0.0;
                 var depth = vec2f(0.0);
                 var emission = found.emission;
@@ -624,6 +648,11 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     meeting.told = path.base.slack == 0.0 && path_cover(found) == 1.0 && found.transmission == 0.0;
                 } else {
                     found = path_secondary(found, ray.roughness);
+                    if translucent_is(found) {
+                        let facet = found.facet;
+                        found = translucent_drawn(found, fract(numbers.w * PATH_SIDE));
+                        seen_from *= sign(dot(found.facet, facet));
+                    }
                     lamps = select(1u, PATH_MIRROR_LAMPS, ray.roughness < PATH_SECONDARY_ROUGHNESS);
                     standoff = hit.distance * ray.width * 0.5;
                     // Surfaces that shine are lights: rays see them in a gloss only.
@@ -648,10 +677,27 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                         // Of lamps no means over neighbors are taken, where a lattice would be seen.
                         chances = vec4f(first.xy, fract(first.w + first.z * PATH_BETWEEN), first.z);
                     }
-                    let lamplight = scene_direct(
-                        found, -ray.along, lamps, chances, standoff, depth, turn == 0u, cone * hit.distance,
-                        turn == 0u && spared && meeting.told,
-                    );
+                    var lamplight = SceneDirect();
+                    var side = found;
+                    let sides = select(1u, 2u, turn == 0u && translucent_is(found));
+                    for (var k = 0u; k < sides; k += 1u) {
+                        if k > 0u {
+                            side = translucent_behind(found);
+                            seen_from = -seen_from;
+                        }
+                        let of_side = scene_direct(
+                            side, seen_from, lamps, chances, standoff, depth, turn == 0u, cone * hit.distance,
+                            turn == 0u && spared && meeting.told,
+                        );
+                        if k == 0u {
+                            lamplight = of_side;
+                        } else {
+                            let part = translucent_part(found);
+                            lamplight.lit += of_side.lit;
+                            lamplight.glow = lamplight.glow * (vec3f(1.0) - part) + of_side.glow * part;
+                            lamplight.is_soft = lamplight.is_soft || of_side.is_soft;
+                        }
+                    }
                     lit = emission + lamplight.lit;
                     if turn == 0u {
                         // What is told apart goes with the rest of the light on the diffuse base, which has the material's occlusion.
@@ -725,7 +771,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     nearest = render_frame.nearest;
                 }
                 at = found;
-                view = -ray.along;
+                view = seen_from;
             }
         }
         let surface = meeting.surface;

@@ -1,6 +1,9 @@
 // Intersection of a ray with the scene: the nearest triangle that is not a hole, and its material there.
 // Twin: downpour_trace::surface.
 
+// True if materials transmit light diffusely, as leaves do: the code slows down the rest.
+override SURFACE_TRANSLUCENT: bool = true;
+
 struct SurfaceHit {
     // Negative: nothing.
     distance: f32,
@@ -31,6 +34,8 @@ struct Surface {
     film: f32,
     // Square of the alpha by which its roughness allows for what the ray's footprint does not resolve of its relief and of its bend.
     variance: f32,
+    // Fraction of the light from behind that it scatters toward the viewer.
+    diffuse_transmission: vec3f,
 }
 
 // A texture of a material's row, or white.
@@ -200,9 +205,9 @@ fn surface_at(hit: SurfaceHit, origin: vec3f, direction: vec3f, cone: f32, taps:
     let more = material.more;
 
     // One text for all textures: each copy of it is compiled again.
-    var rows = array<u32, 6>(maps.x, maps.y, maps.z, maps.w, more.x, more.y);
-    var texels: array<vec4f, 6>;
-    for (var k = 0u; k < 6u; k += 1u) {
+    var rows = array<u32, 8>(maps.x, maps.y, maps.z, maps.w, more.x, more.y, more.z, more.w);
+    var texels: array<vec4f, 8>;
+    for (var k = 0u; k < select(6u, 8u, SURFACE_TRANSLUCENT); k += 1u) {
         texels[k] = surface_texture(rows[k], uv, footprint);
     }
     let base = material.base * texels[0] * surface_color(hit);
@@ -214,6 +219,13 @@ fn surface_at(hit: SurfaceHit, origin: vec3f, direction: vec3f, cone: f32, taps:
     let emission = material.emission * texels[3].rgb;
     let occlusion = 1.0 + material.occlusion_strength * (texels[4].r - 1.0);
     let transmission = material.transmission * texels[5].r;
+    var behind = vec3f(0.0);
+    var reflected = 1.0 - metallic;
+    if SURFACE_TRANSLUCENT && !unlit {
+        let part = clamp(material.diffuse_transmission * texels[6].a, 0.0, 1.0);
+        behind = material.diffuse_transmission_color * texels[7].rgb * (part * reflected);
+        reflected *= 1.0 - part;
+    }
 
     var normal = (corner.normal * w + second.normal * hit.u + third.normal * hit.v) * facing;
     let bend = surface_bend(hit);
@@ -242,7 +254,7 @@ fn surface_at(hit: SurfaceHit, origin: vec3f, direction: vec3f, cone: f32, taps:
         surface_roughness(roughness, variance),
         facet,
         clamp(occlusion, 0.0, 1.0),
-        base.rgb * (1.0 - metallic),
+        base.rgb * reflected,
         flags,
         vec3f(f0) * (1.0 - metallic) + base.rgb * metallic,
         clamp(transmission, 0.0, 1.0) * (1.0 - metallic),
@@ -251,5 +263,6 @@ fn surface_at(hit: SurfaceHit, origin: vec3f, direction: vec3f, cone: f32, taps:
         surface_porosity(material.porosity, flags, roughness, metallic),
         0.0,
         variance,
+        behind,
     );
 }

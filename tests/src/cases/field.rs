@@ -182,7 +182,7 @@ fn obstacles(has_holes: bool) -> SceneData {
         MaterialLook::default(),
         MaterialLook {
             flags: SCENE_MASKED | SCENE_DOUBLE_SIDED,
-            maps: [Some(leaves), None, None, None, None, None],
+            maps: [Some(leaves), None, None, None, None, None, None, None],
             ..MaterialLook::default()
         },
     ];

@@ -324,21 +324,33 @@ pub(super) fn functions() -> Vec<FunctionCase> {
 
 /// A floor, boxes of every kind of material, a masked and a see-through sheet, three kinds of lamps, a sky.
 pub(super) fn scene() -> SceneData {
-    scene_that(false, &[])
+    scene_that(Looks::default(), &[])
 }
 
 /// The same with more lamps.
 pub(super) fn lit_scene(lamps: &[LightSource]) -> SceneData {
-    scene_that(false, lamps)
+    scene_that(Looks::default(), lamps)
 }
 
 /// The same with surfaces and the glass of a lamp that shine, and lamps with a size.
 pub(super) fn shining_scene() -> SceneData {
-    scene_that(true, &[])
+    scene_that(Looks { shines: true, ..Looks::default() }, &[])
+}
+
+/// The same, with leaves that transmit light.
+fn leafy_scene() -> SceneData {
+    scene_that(Looks { shines: true, translucent: true }, &[])
+}
+
+/// What a scene has.
+#[derive(Clone, Copy, Default)]
+struct Looks {
+    shines: bool,
+    translucent: bool,
 }
 
 /// The same; if it `shines`, with a board whose colors shine, the glass of a lamp, and lamps with a size.
-fn scene_that(shines: bool, lamps: &[LightSource]) -> SceneData {
+fn scene_that(Looks { shines, translucent }: Looks, lamps: &[LightSource]) -> SceneData {
     let sky: Vec<[f32; 3]> = (0..64 * 32)
         .map(|i| {
             let (x, y) = ((i % 64) as f32 / 64.0, (i / 64) as f32 / 32.0);
@@ -360,16 +372,22 @@ fn scene_that(shines: bool, lamps: &[LightSource]) -> SceneData {
     let relief = builder.add_slot(relief);
     let plain = MaterialLook::default();
     let looks = [
-        MaterialLook { maps: [Some(color), None, None, None, None, None], roughness: 0.6, ..plain },
+        MaterialLook {
+            maps: [Some(color), None, None, None, None, None, None, None],
+            roughness: 0.6,
+            ..plain
+        },
         MaterialLook { metallic: 1.0, roughness: 0.25, base_color: [0.9, 0.6, 0.3, 1.0], ..plain },
         MaterialLook {
-            maps: [None, Some(data), Some(relief), None, Some(data), None],
+            maps: [None, Some(data), Some(relief), None, Some(data), None, None, None],
             roughness: 0.8,
             ..plain
         },
         MaterialLook {
             flags: SCENE_MASKED | SCENE_DOUBLE_SIDED,
-            maps: [Some(color), None, None, None, None, None],
+            diffuse_transmission: if translucent { 0.7 } else { 0.0 },
+            diffuse_transmission_color: [0.9, 1.0, 0.4],
+            maps: [Some(color), None, None, None, None, None, Some(data), Some(color)],
             ..plain
         },
         MaterialLook { flags: SCENE_BLENDED, base_color: [0.2, 0.9, 0.4, 0.4], ..plain },
@@ -384,7 +402,7 @@ fn scene_that(shines: bool, lamps: &[LightSource]) -> SceneData {
     let materials = looks.map(|look| builder.add_material(look));
     let shining = [
         MaterialLook {
-            maps: [None, None, None, Some(color), None, None],
+            maps: [None, None, None, Some(color), None, None, None, None],
             emission: [4.0, 3.0, 2.0],
             ..plain
         },
@@ -518,20 +536,29 @@ pub(super) struct Parts {
     pub(super) shines: f64,
     pub(super) puddles: f64,
     pub(super) wet: f64,
+    pub(super) translucent: f64,
 }
 
 impl Parts {
-    pub(super) const NONE: Self =
-        Self { wet_panes: 0.0, impostors: 0.0, pane: 0.0, shines: 0.0, puddles: 0.0, wet: 0.0 };
+    pub(super) const NONE: Self = Self {
+        wet_panes: 0.0,
+        impostors: 0.0,
+        pane: 0.0,
+        shines: 0.0,
+        puddles: 0.0,
+        wet: 0.0,
+        translucent: 0.0,
+    };
 
     /// The overrides, sorted by name.
-    pub(super) const fn overrides(self) -> [(&'static str, f64); 6] {
+    pub(super) const fn overrides(self) -> [(&'static str, f64); 7] {
         [
             ("GLAZING_PANES", self.wet_panes),
             ("IMPOSTOR_REFLECTIONS", self.impostors),
             ("SCENE_PANE", self.pane),
             ("SCENE_SHINES", self.shines),
             ("SCENE_WET", self.puddles),
+            ("SURFACE_TRANSLUCENT", self.translucent),
             ("WET_SURFACES", self.wet),
         ]
     }
@@ -542,6 +569,9 @@ pub(super) const DULL: &[(&str, f64)] = &Parts::NONE.overrides();
 
 /// A dry scene of which something does.
 const SHINING: &[(&str, f64)] = &Parts { shines: 1.0, ..Parts::NONE }.overrides();
+
+/// A dry scene of which something shines, with leaves that transmit light.
+const LEAFY: &[(&str, f64)] = &Parts { shines: 1.0, translucent: 1.0, ..Parts::NONE }.overrides();
 
 const PICTURE: Tol = Tol::relative(
     2.0e-3,
@@ -569,6 +599,12 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         }),
         case("main_trace: surfaces that shine, and lamps with a size", SHINING, |gpu| {
             picture(gpu, &shining_scene(), Vec3::new(0.6, 1.4, 3.0), 2)
+        }),
+        case("main_trace: leaves that transmit light", LEAFY, |gpu| {
+            picture(gpu, &leafy_scene(), Vec3::new(0.6, 1.4, 3.0), 2)
+        }),
+        case("main_trace: leaves that transmit light, without rays to the sky", LEAFY, |gpu| {
+            picture(gpu, &leafy_scene(), Vec3::new(1.2, 0.4, -2.6), 0)
         }),
         case("main_trace: the sun over surfaces that shine", SHINING, |gpu| {
             // The sun stands behind the middle.

@@ -1,5 +1,5 @@
 //! Materials: the metallic and rough model of glTF 2.0 (section 3.9 and appendix B), with the
-//! extensions `KHR_materials_emissive_strength`, `_ior`, `_transmission` and `_unlit`.
+//! extensions `KHR_materials_diffuse_transmission`, `_emissive_strength`, `_ior`, `_transmission` and `_unlit`.
 
 use glam::{Affine2, Vec2, Vec3, Vec4};
 
@@ -40,6 +40,15 @@ pub struct Material {
     pub transmission: f32,
     /// Red multiplies `transmission`; linear.
     pub transmission_texture: Option<TextureRef>,
+    /// The part of the light not reflected by the gloss that leaves the surface on its other side, scattered evenly, in [0, 1]: that of
+    /// leaves, paper and cloth.
+    pub diffuse_transmission: f32,
+    /// Alpha multiplies `diffuse_transmission`; linear.
+    pub diffuse_transmission_texture: Option<TextureRef>,
+    /// Color of that light, as `base_color` is that of reflected light; each in [0, 1].
+    pub diffuse_transmission_color: Vec3,
+    /// Multiplies `diffuse_transmission_color`; sRGB.
+    pub diffuse_transmission_color_texture: Option<TextureRef>,
     /// Index of refraction; 1 or more, or 0 for a surface that reflects all light as the extension allows.
     pub ior: f32,
     /// Fraction that soaks up rain, in [0, 1]: `porosity` of the material's `extras`. `None`: by roughness and metalness.
@@ -108,6 +117,10 @@ impl Default for Material {
             unlit: false,
             transmission: 0.0,
             transmission_texture: None,
+            diffuse_transmission: 0.0,
+            diffuse_transmission_texture: None,
+            diffuse_transmission_color: Vec3::ONE,
+            diffuse_transmission_color_texture: None,
             ior: 1.5,
             porosity: None,
         }
@@ -124,6 +137,8 @@ impl Material {
             &self.occlusion_texture,
             &self.emissive_texture,
             &self.transmission_texture,
+            &self.diffuse_transmission_texture,
+            &self.diffuse_transmission_color_texture,
         ]
         .into_iter()
         .flatten()
@@ -138,6 +153,8 @@ impl Material {
             &mut self.occlusion_texture,
             &mut self.emissive_texture,
             &mut self.transmission_texture,
+            &mut self.diffuse_transmission_texture,
+            &mut self.diffuse_transmission_color_texture,
         ]
         .into_iter()
         .flatten()

@@ -37,6 +37,10 @@ fn every_factor_is_read() {
         "extensions": {
             "KHR_materials_emissive_strength": {"emissiveStrength": 8},
             "KHR_materials_ior": {"ior": 1.333},
+            "KHR_materials_diffuse_transmission": {
+                "diffuseTransmissionFactor": 0.625, "diffuseTransmissionColorFactor": [0.5, 1, 0.25],
+                "diffuseTransmissionTexture": {"index": 0}, "diffuseTransmissionColorTexture": {"index": 0}
+            },
             "KHR_materials_transmission": {"transmissionFactor": 0.875},
             "KHR_materials_unlit": {},
             "KHR_materials_clearcoat": {"clearcoatFactor": 1}
@@ -50,6 +54,12 @@ fn every_factor_is_read() {
     assert_eq!((material.ior, material.transmission, material.unlit), (1.333, 0.875, true));
     assert_eq!((material.occlusion_strength, material.name.as_str()), (0.5, "glass"));
     assert_eq!(material.porosity, Some(0.375));
+    assert_eq!(material.diffuse_transmission, 0.625);
+    assert_eq!(material.diffuse_transmission_color, Vec3::new(0.5, 1.0, 0.25));
+    let [amount, color] =
+        [&material.diffuse_transmission_texture, &material.diffuse_transmission_color_texture]
+            .map(|used| used.as_ref().map(|used| scene.textures[used.texture].encoding));
+    assert_eq!((amount, color), (Some(Encoding::Linear), Some(Encoding::Srgb)));
     warned(&scene, "\"KHR_materials_clearcoat\" is not read");
     let plain = good(&textured(&json!({})));
     assert_eq!(plain.materials[0], Material::default());

@@ -24,6 +24,7 @@ struct Leaf {
     way: [f32; 2],
     length: f32,
     width: f32,
+    /// Fractions of light that it scatters, to both sides together.
     color: [f32; 3],
 }
 
@@ -48,8 +49,8 @@ impl Leaf {
         let room =
             |at: f32, way: f32| (if way > 0.0 { 0.98 - at } else { at - 0.02 }) / way.abs().max(1.0e-3);
         let room = room(foot[0], way[0]).min(room(foot[1], way[1]));
-        let green = mix3([0.070, 0.112, 0.030], [0.125, 0.180, 0.052], r(4));
-        let old = mix3(green, [0.22, 0.19, 0.055], smooth(0.88, 1.0, r(5)) * 0.8);
+        let green = mix3([0.117, 0.187, 0.050], [0.208, 0.300, 0.087], r(4));
+        let old = mix3(green, [0.37, 0.32, 0.092], smooth(0.88, 1.0, r(5)) * 0.8);
         Self {
             foot,
             way,
@@ -85,7 +86,7 @@ impl Leaf {
 fn twig(leaves: &[Leaf], number: i32, u: f32, v: f32) -> Option<[f32; 3]> {
     let leaf = leaves.iter().rev().find_map(|leaf| leaf.at(u, v));
     let on_stem = v < 0.82 && (u - stem(number, v)).abs() < mix(0.010, 0.005, v);
-    leaf.or(on_stem.then_some([0.10, 0.075, 0.05]))
+    leaf.or(on_stem.then_some([0.25, 0.19, 0.125]))
 }
 
 /// Leaves of all twigs, twig by twig.
@@ -102,7 +103,7 @@ pub(crate) fn leaves() -> Raster {
         let number = x.floor() as usize + TWIGS as usize * y.floor() as usize;
         match twig(&all[number], number as i32, x.fract(), 1.0 - y.fract()) {
             Some([r, g, b]) => [r, g, b, 1.0],
-            None => [0.095, 0.140, 0.042, 0.0],
+            None => [0.158, 0.233, 0.070, 0.0],
         }
     })
 }

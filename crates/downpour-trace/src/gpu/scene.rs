@@ -310,11 +310,12 @@ struct SceneParts {
     shines: bool,
     is_glazed: bool,
     has_impostors: bool,
+    is_translucent: bool,
 }
 
 impl SceneParts {
     /// Number of combinations.
-    const COUNT: usize = 64;
+    const COUNT: usize = 128;
 
     fn of(frame: &RenderFrame) -> Self {
         Self {
@@ -324,13 +325,21 @@ impl SceneParts {
             shines: frame.emitters > 0,
             is_glazed: frame.glazing > 0,
             has_impostors: frame.impostors > 0,
+            is_translucent: frame.translucent > 0,
         }
     }
 
     /// Index of the combination, below [`SceneParts::COUNT`].
     fn index(self) -> usize {
-        let flags =
-            [self.has_puddles, self.has_pane, self.is_wet, self.shines, self.is_glazed, self.has_impostors];
+        let flags = [
+            self.has_puddles,
+            self.has_pane,
+            self.is_wet,
+            self.shines,
+            self.is_glazed,
+            self.has_impostors,
+            self.is_translucent,
+        ];
         flags.iter().rev().fold(0, |index, &flag| index << 1 | usize::from(flag))
     }
 }
@@ -345,6 +354,7 @@ fn tracer(gpu: &Gpu, samples: SampleDispatches, parts: SceneParts) -> Result<Com
         ("SCENE_SHINES", number(parts.shines)),
         ("GLAZING_PANES", number(parts.is_glazed)),
         ("IMPOSTOR_REFLECTIONS", number(parts.has_impostors)),
+        ("SURFACE_TRANSLUCENT", number(parts.is_translucent)),
     ];
     let kernel = match samples {
         SampleDispatches::Together => &TRACE_KERNEL,

@@ -12,6 +12,7 @@ use crate::scatter::{scatter_chance, scatter_gloss};
 use crate::scene::SceneView;
 use crate::scene::water::{puddle_water_albedo, puddle_water_normal, puddle_water_reflectance};
 use crate::surface::Surface;
+use crate::translucent::translucent_albedo;
 
 /// The rays that look for the light of a surface.
 #[derive(Clone, Copy, Debug)]
@@ -76,7 +77,7 @@ pub(crate) fn path_max(color: Vec3) -> f32 {
 
 /// Fraction of the light on its diffuse base that a surface gives back.
 pub(super) fn path_albedo(surface: &Surface) -> Vec3 {
-    surface.diffuse * ((1.0 - surface.transmission) * surface.occlusion)
+    translucent_albedo(surface) * ((1.0 - surface.transmission) * surface.occlusion)
 }
 
 /// Opacity of a surface.
@@ -109,6 +110,7 @@ pub(super) fn path_water_surface(start: Vec3, along: Vec3, distance: f32, ripple
         porosity: 0.0,
         film: 0.0,
         variance: 0.0,
+        diffuse_transmission: Vec3::ZERO,
     }
 }
 
@@ -117,6 +119,7 @@ pub(super) fn path_submerged(surface: &Surface, clear: f32, scattering_albedo: V
     Surface {
         diffuse: puddle_water_albedo(surface.diffuse * clear + scattering_albedo * (1.0 - clear)),
         normal_reflectance: puddle_water_reflectance(surface.normal_reflectance) * clear,
+        diffuse_transmission: surface.diffuse_transmission * clear,
         emission: surface.emission * clear,
         film: 0.0,
         ..*surface
@@ -142,6 +145,7 @@ pub(super) fn path_secondary(surface: &Surface, roughness: f32) -> Surface {
 pub(super) fn path_matte(surface: &Surface, gloss: Vec3) -> Surface {
     Surface {
         diffuse: surface.diffuse * (Vec3::ONE - gloss),
+        diffuse_transmission: surface.diffuse_transmission * (Vec3::ONE - gloss),
         normal_reflectance: Vec3::ZERO,
         roughness: 1.0,
         film: 0.0,

@@ -90,7 +90,7 @@ pub(super) fn scene_of(meshes: &[ObstacleMesh<'_>]) -> Result<SceneData, RainErr
         let look = MaterialLook {
             flags: SCENE_MASKED,
             alpha_cutoff: holes.cutoff,
-            maps: [Some(slot), None, None, None, None, None],
+            maps: [Some(slot), None, None, None, None, None, None, None],
             ..MaterialLook::default()
         };
         let material = builder.add_material(look);

@@ -6,8 +6,9 @@ use crate::warning::{WarningKind, Warnings};
 use std::collections::BTreeMap;
 
 /// Extensions that are read, or that have no effect on a picture.
-const READ: [&str; 9] = [
+const READ: [&str; 10] = [
     "KHR_lights_punctual",
+    "KHR_materials_diffuse_transmission",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
     "KHR_materials_transmission",

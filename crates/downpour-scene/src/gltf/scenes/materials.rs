@@ -90,6 +90,15 @@ fn extensions(
         material.transmission_texture =
             texture(&glass, "transmissionTexture", Encoding::Linear, textures, warnings)?;
     }
+    if let Some(leaf) = extensions.get("KHR_materials_diffuse_transmission")? {
+        material.diffuse_transmission = fields::fraction(&leaf, "diffuseTransmissionFactor", 0.0, warnings)?;
+        material.diffuse_transmission_texture =
+            texture(&leaf, "diffuseTransmissionTexture", Encoding::Linear, textures, warnings)?;
+        material.diffuse_transmission_color =
+            fields::fractions(&leaf, "diffuseTransmissionColorFactor", [1.0; 3], warnings)?.into();
+        material.diffuse_transmission_color_texture =
+            texture(&leaf, "diffuseTransmissionColorTexture", Encoding::Srgb, textures, warnings)?;
+    }
     material.unlit = extensions.get("KHR_materials_unlit")?.is_some();
     Ok(())
 }
