@@ -30,7 +30,7 @@ use downpour_shaders::bvh::BVH_FAR;
 use downpour_shaders::render::path::{
     PATH_BETWEEN, PATH_BOUNCES, PATH_CANDIDATES, PATH_CURVED, PATH_CURVED_FRACTION, PATH_CURVED_PART,
     PATH_LATER_FRACTION, PATH_MIRROR_LAMPS, PATH_OCCLUSION, PATH_OPEN, PATH_OTHER, PATH_PLAIN_GLOSS,
-    PATH_SAME_FACET, PATH_SAME_PLANE, PATH_SECONDARY_ROUGHNESS, PATH_SHINES, PATH_SIDE,
+    PATH_SAME_FACET, PATH_SAME_PLANE, PATH_SECONDARY_ROUGHNESS, PATH_SHINES,
 };
 use downpour_shaders::render::puddle_water::{
     PUDDLE_WATER_DOWN, PUDDLE_WATER_INDEX, PUDDLE_WATER_MATERIAL, PUDDLE_WATER_RAYS, PUDDLE_WATER_RIPPLED,
@@ -39,6 +39,7 @@ use downpour_shaders::render::scene::{
     SCENE_ALL_OUT, SCENE_FAR, SCENE_LAMP_GLASS, SCENE_LAYERS, SCENE_NONE, SCENE_PICTURE, SCENE_SEEN_BODY,
     SCENE_UNLIT, SKYLIGHT_SLACK, TEXTURE_TAPS,
 };
+use downpour_shaders::render::translucent::TRANSLUCENT_SIDE;
 use downpour_shaders::render::wet::WET_FAR;
 use glam::{Vec2, Vec3};
 
@@ -349,14 +350,7 @@ impl SceneView<'_> {
                 let footprint = Some(cone * hit.distance);
                 let spared = spared && told;
                 let asked = SceneAsked { draws: 0, numbers, standoff: 0.0, under: depth, footprint, spared };
-                let mut lamplight = self.scene_direct(&found, -towards, &asked);
-                if translucent_is(&found) {
-                    let behind = self.scene_direct(&translucent_behind(&found), towards, &asked);
-                    let part = translucent_part(&found);
-                    lamplight.lit += behind.lit;
-                    lamplight.glow = lamplight.glow * (Vec3::ONE - part) + behind.glow * part;
-                    lamplight.is_soft |= behind.is_soft;
-                }
+                let lamplight = self.scene_direct(&found, -towards, &asked);
                 direct = if left_out { Vec3::ZERO } else { found.emission } + lamplight.lit;
                 // What is told apart goes with the rest of the light on the diffuse base, which has the material's occlusion.
                 (glow, is_soft) = (lamplight.glow / found.occlusion.max(PATH_OCCLUSION), lamplight.is_soft);
@@ -505,7 +499,7 @@ impl SceneView<'_> {
                 let mut seen_from = -ray.along;
                 if translucent_is(&found) {
                     let facet = found.facet;
-                    found = translucent_drawn(&found, (numbers[3] * PATH_SIDE).fract());
+                    found = translucent_drawn(&found, (numbers[3] * TRANSLUCENT_SIDE).fract());
                     seen_from *= found.facet.dot(facet).signum();
                 }
                 let lamps = if ray.roughness < PATH_SECONDARY_ROUGHNESS { PATH_MIRROR_LAMPS } else { 1 };

@@ -4,7 +4,7 @@
 //! Such a surface scatters a part of the light that falls on its back evenly to the viewer's side: radiance is that part times the
 //! irradiance behind, over pi. It is one diffuse base with two sides:
 //!
-//! - what the camera sees has the lamps of both sides, and its rays look for the light of sky and surfaces on either, by what each side
+//! - what the camera sees has the lamps of both sides, each on its own, and its rays look for the light of sky and surfaces on either, by what each side
 //!   gives back; means over neighboring pixels are taken of both together, with the sum of the two albedos as their factor;
 //! - what a ray meets has the light of one side, drawn for both.
 //!
@@ -53,6 +53,13 @@ pub fn translucent_behind(surface: &Surface) -> Surface {
         film: 0.0,
         ..*surface
     }
+}
+
+/// The normal of the triangle on the side of the surface that light from a direction meets; the viewer's if no light passes.
+#[must_use]
+pub fn translucent_facet(surface: &Surface, direction: Vec3) -> Vec3 {
+    let is_behind = translucent_is(surface) && surface.facet.dot(direction) < 0.0;
+    if is_behind { -surface.facet } else { surface.facet }
 }
 
 /// One side drawn for both by a number in [0, 1), and as much brighter.

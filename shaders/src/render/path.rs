@@ -79,8 +79,6 @@ shared_constants! {
         PATH_OCCLUSION: f32 = 0.05;
         /// Makes other numbers of those of a ray.
         PATH_OTHER: f32 = 61.0;
-        /// Makes the number that draws the side of a surface that light passes.
-        PATH_SIDE: f32 = 311.0;
         /// Lamps that are drawn for all where a mirror shows a surface.
         PATH_MIRROR_LAMPS: u32 = 4;
         /// Part of all rays that one is which has met a surface.

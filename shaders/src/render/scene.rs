@@ -9,6 +9,7 @@ use super::path::PATH;
 use super::puddle_water::PUDDLE_WATER;
 use super::scatter::SCATTER;
 use super::table::{LIGHT, MATERIAL};
+use super::translucent::TRANSLUCENT;
 use super::wet::WET;
 use crate::bvh::BVH;
 use crate::common::{COLOR, EQUIRECT, PACKING};
@@ -242,6 +243,7 @@ pub static SCENE: Module = Module {
         &PANE_SHADOW,
         &PUDDLE_WATER,
         &SCATTER,
+        &TRANSLUCENT,
         &WET,
     ],
 };

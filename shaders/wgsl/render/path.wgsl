@@ -650,7 +650,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     found = path_secondary(found, ray.roughness);
                     if translucent_is(found) {
                         let facet = found.facet;
-                        found = translucent_drawn(found, fract(numbers.w * PATH_SIDE));
+                        found = translucent_drawn(found, fract(numbers.w * TRANSLUCENT_SIDE));
                         seen_from *= sign(dot(found.facet, facet));
                     }
                     lamps = select(1u, PATH_MIRROR_LAMPS, ray.roughness < PATH_SECONDARY_ROUGHNESS);
@@ -677,27 +677,10 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                         // Of lamps no means over neighbors are taken, where a lattice would be seen.
                         chances = vec4f(first.xy, fract(first.w + first.z * PATH_BETWEEN), first.z);
                     }
-                    var lamplight = SceneDirect();
-                    var side = found;
-                    let sides = select(1u, 2u, turn == 0u && translucent_is(found));
-                    for (var k = 0u; k < sides; k += 1u) {
-                        if k > 0u {
-                            side = translucent_behind(found);
-                            seen_from = -seen_from;
-                        }
-                        let of_side = scene_direct(
-                            side, seen_from, lamps, chances, standoff, depth, turn == 0u, cone * hit.distance,
-                            turn == 0u && spared && meeting.told,
-                        );
-                        if k == 0u {
-                            lamplight = of_side;
-                        } else {
-                            let part = translucent_part(found);
-                            lamplight.lit += of_side.lit;
-                            lamplight.glow = lamplight.glow * (vec3f(1.0) - part) + of_side.glow * part;
-                            lamplight.is_soft = lamplight.is_soft || of_side.is_soft;
-                        }
-                    }
+                    let lamplight = scene_direct(
+                        found, seen_from, lamps, chances, standoff, depth, turn == 0u, cone * hit.distance,
+                        turn == 0u && spared && meeting.told,
+                    );
                     lit = emission + lamplight.lit;
                     if turn == 0u {
                         // What is told apart goes with the rest of the light on the diffuse base, which has the material's occlusion.

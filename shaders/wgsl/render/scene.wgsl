@@ -70,24 +70,26 @@ fn scene_visibility(position: vec3f, direction: vec3f, distance: f32) -> vec3f {
 // goes in.
 fn scene_arrival(lamp: RenderLight, surface: Surface, standoff: f32, under: vec2f) -> SceneArrival {
     var position = surface.position;
+    var facet = surface.facet;
     var light = LightSample();
     var arrival = SceneArrival();
     var height = 0.0;
     var passes = 1u;
     for (var k = 0u; k < passes; k += 1u) {
         if k > 0u {
-            position = surface.position - surface.facet * (standoff - height);
+            position = surface.position - facet * (standoff - height);
             if SCENE_WET && under.x > 0.0 {
                 position = surface.position + vec3f(0.0, under.y, 0.0) + puddle_water_entry(light.direction, under.x);
             }
         }
         light = light_sample(lamp, position, 0.0);
         if k == 0u {
-            let start = position + surface.facet * render_frame.nearest;
+            facet = translucent_facet(surface, light.direction);
+            let start = position + facet * render_frame.nearest;
             arrival = SceneArrival(
                 start, light.distance, light.direction, light.spread, light.direction, 1.0, light.irradiance,
             );
-            height = dot(light.direction, surface.facet) * light.distance;
+            height = dot(light.direction, facet) * light.distance;
             passes = select(1u, 2u, height > 0.0 && height < standoff);
             if SCENE_WET && under.x > 0.0 {
                 passes = 3u;
@@ -219,7 +221,17 @@ fn scene_direct(
     var count = render_frame.light_count;
     var place = RenderLight();
     if SCENE_SHINES && render_frame.emitters > 0u {
-        place = emitter_draw(surface.position, surface.normal, numbers.xyz);
+        var normal = surface.normal;
+        var weight = 1.0;
+        if translucent_is(surface) {
+            // Those of one side, drawn for both.
+            let chance = translucent_chance(surface);
+            let is_behind = fract(numbers.w * TRANSLUCENT_SIDE) < chance;
+            normal *= select(1.0, -1.0, is_behind);
+            weight = 1.0 / select(1.0 - chance, chance, is_behind);
+        }
+        place = emitter_draw(surface.position, normal, numbers.xyz);
+        place.color *= weight;
         count += 1u;
     }
     let few = draws > 0u && draws < count;
@@ -268,20 +280,33 @@ fn scene_direct(
                 if is_first {
                     soft = select(scene_softness(arrival.distance, arrival.spread, footprint), 1.0, is_area);
                 }
-                var bare = surface;
+                // A lamp behind a leaf lights that side.
+                var side = surface;
+                var viewer = view;
+                var part = vec3f(1.0);
+                if translucent_is(surface) {
+                    part = translucent_part(surface);
+                    if dot(surface.facet, arrival.direction) < 0.0 {
+                        side = translucent_behind(surface);
+                        viewer = -view;
+                    } else {
+                        part = vec3f(1.0) - part;
+                    }
+                }
+                var bare = side;
                 bare.diffuse *= 1.0 - surface.transmission;
                 if soft > 0.0 {
-                    relief = scene_glow(surface, view, arrival, out) * soft;
+                    relief = scene_glow(side, viewer, arrival, out) * part * soft;
                     glow = relief;
                     if !is_area {
-                        var level = surface;
-                        level.normal = surface.facet;
-                        glow = scene_glow(level, view, arrival, out) * soft;
+                        var level = side;
+                        level.normal = side.facet;
+                        glow = scene_glow(level, viewer, arrival, out) * part * soft;
                     }
                     bare.diffuse *= 1.0 - soft;
                 }
                 if !(is_first && is_area) {
-                    lit = scene_lamp(bare, view, arrival, out, glossy && lamp.kind == SCENE_LIGHT_BODY);
+                    lit = scene_lamp(bare, viewer, arrival, out, glossy && lamp.kind == SCENE_LIGHT_BODY);
                 }
             }
             fraction = light_weight(lit) + light_weight(glow);

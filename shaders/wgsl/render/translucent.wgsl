@@ -37,6 +37,11 @@ fn translucent_behind(surface: Surface) -> Surface {
     return behind;
 }
 
+// The normal of the triangle on the side of the surface that light from a direction meets; the viewer's if no light passes.
+fn translucent_facet(surface: Surface, direction: vec3f) -> vec3f {
+    return select(surface.facet, -surface.facet, translucent_is(surface) && dot(surface.facet, direction) < 0.0);
+}
+
 // One side drawn for both by a number in [0, 1), and as much brighter.
 fn translucent_drawn(surface: Surface, number: f32) -> Surface {
     let chance = translucent_chance(surface);

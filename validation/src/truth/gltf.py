@@ -106,6 +106,12 @@ def material(file, index, kind):
     else:
         number = lambda value: value if isinstance(value, dict) else {"type": "rgb", "value": [float(value)] * 3}
         bsdf = {"type": "gltf", "base": color, "roughness": number(roughness), "metallic": number(metallic)}
+        leaf = found.get("extensions", {}).get("KHR_materials_diffuse_transmission", {})
+        through = leaf.get("diffuseTransmissionColorFactor", [1, 1, 1])
+        bsdf["part"] = float(leaf.get("diffuseTransmissionFactor", 0.0))
+        bsdf["through"] = {"type": "rgb", "value": through}
+        if "diffuseTransmissionColorTexture" in leaf:
+            bsdf["through"] = texture(file, leaf["diffuseTransmissionColorTexture"], through)
     two_sided = {"type": "twosided", "inner": bsdf} if kind == "principled" else bsdf
     glow = found.get("emissiveFactor")
     lit = found.get("emissiveTexture")

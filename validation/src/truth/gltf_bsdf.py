@@ -1,5 +1,6 @@
 """glTF's metallic-roughness reflection (glTF 2.0, appendix B) as a material of Mitsuba: GGX with height-correlated Smith
-shadowing over a Lambertian base, mixed by Schlick's Fresnel at the half vector.
+shadowing over a Lambertian base, mixed by Schlick's Fresnel at the half vector. Of the base's light a fraction may leave on the other
+side (KHR_materials_diffuse_transmission).
 
 To be imported after the variant is set.
 """
@@ -19,9 +20,17 @@ class Gltf(mi.BSDF):
         self.base = properties.get_texture("base")
         self.roughness = properties.get_texture("roughness")
         self.metallic = properties.get_texture("metallic")
+        # Fraction of the base's light that leaves on the other side, and its color.
+        self.part = properties.get("part", 0.0)
+        self.through = properties.get_texture("through")
         both = mi.BSDFFlags.FrontSide | mi.BSDFFlags.BackSide
-        self.m_components = [mi.BSDFFlags.DiffuseReflection | both, mi.BSDFFlags.GlossyReflection | both]
-        self.m_flags = self.m_components[0] | self.m_components[1]
+        components = [mi.BSDFFlags.DiffuseReflection | both, mi.BSDFFlags.GlossyReflection | both]
+        flags = components[0] | components[1]
+        if self.part > 0.0:
+            components.append(mi.BSDFFlags.DiffuseTransmission | both)
+            flags |= components[2]
+        self.m_components = components
+        self.m_flags = flags
 
     def look(self, si, active):
         base = self.base.eval(si, active)
@@ -31,7 +40,7 @@ class Gltf(mi.BSDF):
         normal = DIELECTRIC * (1.0 - metallic) + base * metallic
         # Half of the samples to each lobe of a dielectric; a metal has one.
         chance = dr.select(metallic > 0.99, 1.0, 0.5)
-        return base * (1.0 - metallic), normal, alpha, chance
+        return base * ((1.0 - metallic) * (1.0 - self.part)), normal, alpha, chance
 
     @staticmethod
     def faced(si, wo):
@@ -39,13 +48,20 @@ class Gltf(mi.BSDF):
         side = dr.select(mi.Frame3f.cos_theta(si.wi) < 0.0, -1.0, 1.0)
         return si.wi * mi.Vector3f(1, 1, side), wo * mi.Vector3f(1, 1, side), side
 
-    @staticmethod
-    def density(wi, wo, alpha, chance):
+    def behind(self, wi, wo, si, active):
+        """Value and density of light from behind, as the base of a medium of index 1 has it on the other side."""
+        cosine = dr.maximum(-mi.Frame3f.cos_theta(wo), 0.0)
+        rest = 1.0 - dr.clip(dr.dot(-wi, dr.normalize(wo - wi)), 0.0, 1.0)
+        enters = 1.0 - (rest * rest) * (rest * rest) * rest
+        value = self.through.eval(si, active) * (self.part * dr.inv_pi * enters * cosine)
+        return value, dr.inv_pi * cosine
+
+    def density(self, wi, wo, alpha, chance):
         half = dr.normalize(wi + wo)
         lobe = mi.MicrofacetDistribution(mi.MicrofacetType.GGX, alpha, True)
         glossy = lobe.pdf(wi, half) / (4.0 * dr.maximum(dr.dot(wi, half), 1.0e-6))
         diffuse = dr.inv_pi * dr.maximum(mi.Frame3f.cos_theta(wo), 0.0)
-        return chance * glossy + (1.0 - chance) * diffuse
+        return chance * glossy + (1.0 - chance) * (1.0 - self.part) * diffuse
 
     @staticmethod
     def value(wi, wo, diffuse, normal, alpha):
@@ -68,8 +84,15 @@ class Gltf(mi.BSDF):
         half, _ = lobe.sample(wi, sample_2)
         glossy = sample_1 < chance
         wo = dr.select(glossy, mi.reflect(wi, half), mi.warp.square_to_cosine_hemisphere(sample_2))
-        active = active & (mi.Frame3f.cos_theta(wi) > 0.0) & (mi.Frame3f.cos_theta(wo) > 0.0)
+        passes = ~glossy & ((sample_1 - chance) / (1.0 - dr.minimum(chance, 0.999)) < self.part)
+        wo = dr.select(passes, -wo, wo)
+        active = active & (mi.Frame3f.cos_theta(wi) > 0.0) & (passes | (mi.Frame3f.cos_theta(wo) > 0.0))
         pdf = self.density(wi, wo, alpha, chance)
+        value = self.value(wi, wo, diffuse, normal, alpha)
+        if self.part > 0.0:
+            other, density = self.behind(wi, wo, si, active)
+            value = dr.select(passes, other, value)
+            pdf = dr.select(passes, density * (1.0 - chance) * self.part, pdf)
         active &= pdf > 0.0
         found = mi.BSDFSample3f()
         found.wo = wo * mi.Vector3f(1, 1, side)
@@ -79,20 +102,32 @@ class Gltf(mi.BSDF):
             glossy, mi.UInt32(+mi.BSDFFlags.GlossyReflection), mi.UInt32(+mi.BSDFFlags.DiffuseReflection)
         )
         found.sampled_component = dr.select(glossy, mi.UInt32(1), mi.UInt32(0))
-        value = self.value(wi, wo, diffuse, normal, alpha) / pdf
-        return found, dr.select(active, mi.Spectrum(value), 0.0)
+        if self.part > 0.0:
+            found.sampled_type = dr.select(passes, mi.UInt32(+mi.BSDFFlags.DiffuseTransmission), found.sampled_type)
+            found.sampled_component = dr.select(passes, mi.UInt32(2), found.sampled_component)
+        return found, dr.select(active, mi.Spectrum(value / pdf), 0.0)
 
     def eval(self, context, si, wo, active=True):
         wi, out, _ = self.faced(si, wo)
         diffuse, normal, alpha, _ = self.look(si, active)
-        active = active & (mi.Frame3f.cos_theta(wi) > 0.0) & (mi.Frame3f.cos_theta(out) > 0.0)
-        return dr.select(active, mi.Spectrum(self.value(wi, out, diffuse, normal, alpha)), 0.0)
+        above = mi.Frame3f.cos_theta(out) > 0.0
+        active = active & (mi.Frame3f.cos_theta(wi) > 0.0)
+        value = dr.select(active & above, mi.Spectrum(self.value(wi, out, diffuse, normal, alpha)), 0.0)
+        if self.part > 0.0:
+            other, _ = self.behind(wi, out, si, active)
+            value = dr.select(active & ~above, mi.Spectrum(other), value)
+        return value
 
     def pdf(self, context, si, wo, active=True):
         wi, out, _ = self.faced(si, wo)
         _, _, alpha, chance = self.look(si, active)
-        active = active & (mi.Frame3f.cos_theta(wi) > 0.0) & (mi.Frame3f.cos_theta(out) > 0.0)
-        return dr.select(active, self.density(wi, out, alpha, chance), 0.0)
+        above = mi.Frame3f.cos_theta(out) > 0.0
+        active = active & (mi.Frame3f.cos_theta(wi) > 0.0)
+        density = dr.select(active & above, self.density(wi, out, alpha, chance), 0.0)
+        if self.part > 0.0:
+            _, other = self.behind(wi, out, si, active)
+            density = dr.select(active & ~above, other * (1.0 - chance) * self.part, density)
+        return density
 
     def eval_pdf(self, context, si, wo, active=True):
         return self.eval(context, si, wo, active), self.pdf(context, si, wo, active)

@@ -16,6 +16,7 @@ use downpour_shaders::render::scene::{
     SCENE_OTHER_DIGIT, SCENE_OTHER_LATTICE, SCENE_PICTURE, SCENE_SAME_SHADOW, SCENE_SEEN_BODY,
     SCENE_SHADOW_M, SCENE_SHADOW_PART, SCENE_SHARP_PIXELS, SCENE_SPOT_GLASS,
 };
+use downpour_shaders::render::translucent::TRANSLUCENT_SIDE;
 use glam::{Vec2, Vec3};
 
 use super::SceneView;
@@ -23,6 +24,9 @@ use crate::brdf::{brdf_direct, brdf_fresnel};
 use crate::scatter::scatter_tangent;
 use crate::scene::water::{puddle_water_beneath, puddle_water_entry};
 use crate::surface::Surface;
+use crate::translucent::{
+    translucent_behind, translucent_chance, translucent_facet, translucent_is, translucent_part,
+};
 
 /// Light of a lamp that arrives at a surface, in air or under water.
 #[derive(Clone, Copy, Debug)]
@@ -119,8 +123,9 @@ impl SceneView<'_> {
         let nearest = self.frame.nearest;
         let mut position = surface.position;
         let mut light = lamp.light_sample(position, 0.0);
+        let facet = translucent_facet(surface, light.direction);
         let mut arrival = SceneArrival {
-            start: position + surface.facet * nearest,
+            start: position + facet * nearest,
             distance: light.distance,
             along: light.direction,
             spread: light.spread,
@@ -128,11 +133,11 @@ impl SceneView<'_> {
             diffuse: 1.0,
             irradiance: light.irradiance,
         };
-        let height = light.direction.dot(surface.facet) * light.distance;
+        let height = light.direction.dot(facet) * light.distance;
         let moved = if height > 0.0 && height < standoff { 1 } else { 0 };
         let passes = if under.x > 0.0 { 2 } else { moved };
         for _ in 0..passes {
-            position = surface.position - surface.facet * (standoff - height);
+            position = surface.position - facet * (standoff - height);
             if under.x > 0.0 {
                 position =
                     surface.position + Vec3::Y * under.y + puddle_water_entry(light.direction, under.x);
@@ -236,8 +241,18 @@ impl SceneView<'_> {
         let mut count = lights;
         let mut place = Light::default();
         if self.frame.emitters > 0 {
-            let [x, y, z, _] = numbers;
-            place = self.data.emitter_draw(surface.position, surface.normal, [x, y, z]);
+            let [x, y, z, w] = numbers;
+            let mut normal = surface.normal;
+            let mut weight = 1.0;
+            if translucent_is(surface) {
+                // Those of one side, drawn for both.
+                let chance = translucent_chance(surface);
+                let is_behind = (w * TRANSLUCENT_SIDE).fract() < chance;
+                normal *= if is_behind { -1.0 } else { 1.0 };
+                weight = 1.0 / if is_behind { chance } else { 1.0 - chance };
+            }
+            place = self.data.emitter_draw(surface.position, normal, [x, y, z]);
+            place.color *= weight;
             count += 1;
         }
         let few = draws > 0 && draws < count;
@@ -276,15 +291,25 @@ impl SceneView<'_> {
                 Some(footprint) => scene_softness(arrival.distance, arrival.spread, footprint),
                 None => 0.0,
             };
+            // A lamp behind a leaf lights that side.
+            let (mut surface, mut view, mut part) = (*surface, view, Vec3::ONE);
+            if translucent_is(&surface) {
+                part = translucent_part(&surface);
+                if surface.facet.dot(arrival.direction) < 0.0 {
+                    (surface, view) = (translucent_behind(&surface), -view);
+                } else {
+                    part = Vec3::ONE - part;
+                }
+            }
             // The part that is told apart, with the facet's normal in place of the relief's.
-            let mut bare = *surface;
+            let mut bare = surface;
             bare.diffuse *= 1.0 - surface.transmission;
             if share.soft > 0.0 {
-                share.relief = self.scene_glow(surface, view, &arrival, out) * share.soft;
+                share.relief = self.scene_glow(&surface, view, &arrival, out) * part * share.soft;
                 share.glow = share.relief;
                 if !is_area {
-                    let level = Surface { normal: surface.facet, ..*surface };
-                    share.glow = self.scene_glow(&level, view, &arrival, out) * share.soft;
+                    let level = Surface { normal: surface.facet, ..surface };
+                    share.glow = self.scene_glow(&level, view, &arrival, out) * part * share.soft;
                 }
                 bare.diffuse *= 1.0 - share.soft;
             }

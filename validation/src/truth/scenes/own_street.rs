@@ -12,8 +12,6 @@ use super::super::{run, write};
 const LAMPS: &str = "KHR_lights_punctual";
 /// Extension of panes.
 const PANES: &str = "KHR_materials_transmission";
-/// Materials that transmit light diffusely: Mitsuba has no such diffuse base.
-const LEAVES: &str = "KHR_materials_diffuse_transmission";
 /// Material of the glass of lamps, which are points here: both renderers would leave them shut in.
 const LAMP_GLASS: &str = "lamp_glass";
 
@@ -92,9 +90,6 @@ fn simplify(model: &mut Value) {
         .map(|material| {
             for key in ["normalTexture", "occlusionTexture"] {
                 remove(material, key);
-            }
-            if let Some(extensions) = material.get_mut("extensions") {
-                remove(extensions, LEAVES);
             }
             material["name"] == LAMP_GLASS || material["extensions"].get(PANES).is_some()
         })
