@@ -8,6 +8,8 @@
 //!   gives back; means over neighboring pixels are taken of both together, with the sum of the two albedos as their factor;
 //! - what a ray meets has the light of one side, drawn for both.
 //!
+//! Which side of a leaf a lamp lights, its normal for shading says, which may be that of a whole crown.
+//!
 //! Limits: the gloss of the other side is not seen through it, and its shadow is that of an opaque surface: what passes is scattered.
 
 use glam::Vec3;
@@ -62,15 +64,20 @@ pub fn translucent_facet(surface: &Surface, direction: Vec3) -> Vec3 {
     if is_behind { -surface.facet } else { surface.facet }
 }
 
-/// One side drawn for both by a number in [0, 1), and as much brighter.
+/// One side drawn for both by a number in [0, 1), and as much brighter; flat, so that no light is on neither.
 #[must_use]
 pub fn translucent_drawn(surface: &Surface, number: f32) -> Surface {
     let chance = translucent_chance(surface);
     if number < chance {
         let behind = translucent_behind(surface);
-        return Surface { diffuse: behind.diffuse / chance, ..behind };
+        return Surface { diffuse: behind.diffuse / chance, normal: behind.facet, ..behind };
     }
-    Surface { diffuse: surface.diffuse / (1.0 - chance), diffuse_transmission: Vec3::ZERO, ..*surface }
+    Surface {
+        diffuse: surface.diffuse / (1.0 - chance),
+        diffuse_transmission: Vec3::ZERO,
+        normal: surface.facet,
+        ..*surface
+    }
 }
 
 impl SceneData {

@@ -231,7 +231,9 @@ fn scene_direct(
             weight = 1.0 / select(1.0 - chance, chance, is_behind);
         }
         place = emitter_draw(surface.position, normal, numbers.xyz);
-        place.color *= weight;
+        // What stands on the other side is drawn with that.
+        let is_there = !translucent_is(surface) || dot(place.position - surface.position, normal) > 0.0;
+        place.color *= select(0.0, weight, is_there);
         count += 1u;
     }
     let few = draws > 0u && draws < count;
@@ -280,18 +282,19 @@ fn scene_direct(
                 if is_first {
                     soft = select(scene_softness(arrival.distance, arrival.spread, footprint), 1.0, is_area);
                 }
-                // A lamp behind a leaf lights that side.
+                // A lamp behind a leaf lights that side: by the normal for shading, so that no lamp is on neither.
                 var side = surface;
                 var viewer = view;
                 var part = vec3f(1.0);
                 if translucent_is(surface) {
                     part = translucent_part(surface);
-                    if dot(surface.facet, arrival.direction) < 0.0 {
+                    if dot(surface.normal, arrival.direction) < 0.0 {
                         side = translucent_behind(surface);
                         viewer = -view;
                     } else {
                         part = vec3f(1.0) - part;
                     }
+                    side.facet = translucent_facet(surface, arrival.direction);
                 }
                 var bare = side;
                 bare.diffuse *= 1.0 - surface.transmission;

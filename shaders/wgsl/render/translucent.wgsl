@@ -42,7 +42,7 @@ fn translucent_facet(surface: Surface, direction: vec3f) -> vec3f {
     return select(surface.facet, -surface.facet, translucent_is(surface) && dot(surface.facet, direction) < 0.0);
 }
 
-// One side drawn for both by a number in [0, 1), and as much brighter.
+// One side drawn for both by a number in [0, 1), and as much brighter; flat, so that no light is on neither.
 fn translucent_drawn(surface: Surface, number: f32) -> Surface {
     let chance = translucent_chance(surface);
     var drawn = surface;
@@ -53,6 +53,7 @@ fn translucent_drawn(surface: Surface, number: f32) -> Surface {
         drawn.diffuse /= 1.0 - chance;
         drawn.diffuse_transmission = vec3f(0.0);
     }
+    drawn.normal = drawn.facet;
     return drawn;
 }
 

@@ -95,7 +95,8 @@ def surfaces(scene, given):
 
 
 def render(scene, given):
-    path = mi.load_dict({"type": "path", "max_depth": DEPTH, "rr_depth": 6})
+    # The one that follows light through holes of cards to lamps: to `path`, a card with holes is whole in the way of a lamp.
+    path = mi.load_dict({"type": "volpath", "max_depth": DEPTH, "rr_depth": 6})
     pairs = max(BATCHES // 2, -(-int(given.path_samples) // (2 * BATCH_SAMPLES)))
     samples = max(int(given.path_samples) // (2 * pairs), 1)
     return [np.array(mi.render(scene, integrator=path, spp=samples, seed=seed)) for seed in range(2 * pairs)]

@@ -252,7 +252,9 @@ impl SceneView<'_> {
                 weight = 1.0 / if is_behind { chance } else { 1.0 - chance };
             }
             place = self.data.emitter_draw(surface.position, normal, [x, y, z]);
-            place.color *= weight;
+            // What stands on the other side is drawn with that.
+            let is_there = !translucent_is(surface) || (place.position - surface.position).dot(normal) > 0.0;
+            place.color *= if is_there { weight } else { 0.0 };
             count += 1;
         }
         let few = draws > 0 && draws < count;
@@ -291,15 +293,17 @@ impl SceneView<'_> {
                 Some(footprint) => scene_softness(arrival.distance, arrival.spread, footprint),
                 None => 0.0,
             };
-            // A lamp behind a leaf lights that side.
+            // A lamp behind a leaf lights that side: by the normal for shading, so that no lamp is on neither.
             let (mut surface, mut view, mut part) = (*surface, view, Vec3::ONE);
             if translucent_is(&surface) {
+                let facet = translucent_facet(&surface, arrival.direction);
                 part = translucent_part(&surface);
-                if surface.facet.dot(arrival.direction) < 0.0 {
+                if surface.normal.dot(arrival.direction) < 0.0 {
                     (surface, view) = (translucent_behind(&surface), -view);
                 } else {
                     part = Vec3::ONE - part;
                 }
+                surface.facet = facet;
             }
             // The part that is told apart, with the facet's normal in place of the relief's.
             let mut bare = surface;
