@@ -4,8 +4,8 @@
 //! Such a surface scatters a part of the light that falls on its back evenly to the viewer's side: radiance is that part times the
 //! irradiance behind, over pi. It is one diffuse base with two sides:
 //!
-//! - what the camera sees has the lamps of both sides, each on its own, and its rays look for the light of sky and surfaces on either, by what each side
-//!   gives back; means over neighboring pixels are taken of both together, with the sum of the two albedos as their factor;
+//! - what the camera sees has the lamps of both sides, each on its own, and its rays look for the light of sky and surfaces on either, by
+//!   what each side gives back; means over neighboring pixels are taken of both together, with the sum of the two albedos as their factor;
 //! - what a ray meets has the light of one side, drawn for both.
 //!
 //! Which side of a leaf a lamp lights, its normal for shading says, which may be that of a whole crown.

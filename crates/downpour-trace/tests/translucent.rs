@@ -45,7 +45,7 @@ fn seen(scene: &SceneData, eye: Vec3, rays: u32) -> Result<DVec3, Box<dyn std::e
     Ok(sum / picture.len() as f64)
 }
 
-/// Schlick's reflectance of a medium of index 1: what it takes of diffuse light at a cosine between view and half-way vector.
+/// Fraction of light that enters a medium of index 1 by Schlick's formula, at a cosine between view and half-way vector.
 fn entering(cosine: f64) -> f64 {
     let rest = 1.0 - cosine;
     let square = rest * rest;
