@@ -66,8 +66,8 @@ fn splashes(bvh: &Bvh, time_s: f64) -> Vec<FallingDrop> {
 /// Expected number of crowns on a square meter: the flux of the drops that splash, times how long each of them lasts.
 fn expected_per_m2() -> f64 {
     let speed = |d: f64| terminal_speed(FallSpeedModel::Beard1976, d, &Air::standard()).expect("a drop");
-    // The Weber number is 400 at the least of them; twelve diameters over the speed are an eighth of the time. Some of the smallest are narrower than the
-    // least width on the picture, 0.75 mm: none here.
+    // The Weber number is 400 at the least of them; twelve diameters over the speed are an eighth of the time, for the part of the energy that is
+    // beyond the least one's. Some of the smallest are narrower than the least width on the picture, 0.75 mm: hardly any here.
     let weber = |d: f64| 998.2 * speed(d) * speed(d) * d / 0.0728;
     let least =
         (0..2000).map(|k| 1.0e-3 + 0.5e-6 * f64::from(k)).find(|&d| weber(d) > 400.0).expect("one splashes");
@@ -75,7 +75,7 @@ fn expected_per_m2() -> f64 {
     (0..steps)
         .map(|k| {
             let d = least + (8.0e-3 - least) * (f64::from(k) + 0.5) / f64::from(steps);
-            let lasts = 8.0 * 12.0 * d / speed(d);
+            let lasts = 8.0 * 12.0 * (1.0 - 400.0 / weber(d)) * d / speed(d);
             law().concentration(d) * speed(d) * lasts * (8.0e-3 - least) / f64::from(steps)
         })
         .sum()
@@ -90,7 +90,7 @@ fn assert_as_many(found: usize, times: u32) {
     let expected = expected_per_m2() * f64::from(times) * (1.9 * 1.9 - 1.0);
     let apart = (found as f64 - expected) / expected.sqrt();
     println!("{found} crowns, expected {expected}");
-    assert!(expected > 1000.0 && apart.abs() < 4.0, "{found} crowns, not {expected}");
+    assert!(expected > 900.0 && apart.abs() < 4.0, "{found} crowns, not {expected}");
 }
 
 #[test]
@@ -203,7 +203,7 @@ fn none_is_under_a_roof_and_all_are_on_a_surface() {
             let foot = if is_above { 0.5 } else { 0.0 };
             on_roof += u32::from(is_above);
             assert!((0.0..0.5 * radius).contains(&(p.y - foot)), "{crown:?}");
-            assert!((1.0e-3..0.05).contains(&radius), "{crown:?}");
+            assert!((0.3e-3..0.05).contains(&radius), "{crown:?}");
         }
     }
     assert!(on_roof > 20, "{on_roof}");

@@ -1,7 +1,10 @@
-//! A hatchback of 4.2 x 1.76 x 1.46 m: a body drawn over stations from nose to tail, wheels, lamps.
+//! A hatchback of 4.2 x 1.76 x 1.46 m: a body drawn over stations from nose to tail, wheels, lamps, and what is seen through its windows.
 //!
 //! The car stands on y = 0 and looks along +z.
 
+mod interior;
+
+use downpour_math::ops;
 use glam::{Vec2, Vec3};
 
 use crate::error::StreetError;
@@ -18,6 +21,9 @@ const ARCH_M: f32 = 0.385;
 /// Ends of the body.
 const NOSE_M: f32 = 2.10;
 const TAIL_M: f32 = -2.08;
+
+/// Radius of the corners at both ends, seen from above.
+const CORNER_M: f32 = 0.12;
 
 /// Half the length and half the width of the body.
 pub(crate) const HALF_LENGTH_M: f32 = 2.14;
@@ -97,7 +103,9 @@ fn belt(z: f32) -> f32 {
 fn half_width(z: f32) -> f32 {
     let nose = smooth(1.25, 2.25, z);
     let tail = smooth(-1.4, -2.3, z);
-    HALF_WIDTH_M * (1.0 - 0.30 * nose * nose * nose - 0.17 * tail * tail * tail)
+    let into = (CORNER_M - (NOSE_M - z).min(z - TAIL_M)).clamp(0.0, CORNER_M);
+    let corner = CORNER_M - (CORNER_M * CORNER_M - into * into).sqrt();
+    HALF_WIDTH_M * (1.0 - 0.20 * nose * nose * nose - 0.11 * tail * tail * tail) - corner
 }
 
 /// Lower edge of the body: sills, bumpers and arches.
@@ -151,7 +159,7 @@ const GAPS_M: [f32; 3] = [0.93, -0.16, -1.02];
 const PILLARS_M: [[f32; 2]; 2] = [[-0.16, 0.05], [-1.12, 0.06]];
 
 fn stations() -> Vec<f32> {
-    let mut all: Vec<f32> = (0..=30).map(|k| mix(TAIL_M, NOSE_M, k as f32 / 30.0)).collect();
+    let mut all = Vec::new();
     for gap in GAPS_M {
         all.extend([gap - 0.004, gap + 0.004]);
     }
@@ -162,7 +170,14 @@ fn stations() -> Vec<f32> {
         all.extend([-1.0, -0.92, -0.7, -0.4, 0.4, 0.7, 0.92, 1.0].map(|t| axle + t * ARCH_M));
         all.extend([axle - ARCH_M - 0.003, axle + ARCH_M + 0.003]);
     }
-    all.extend([0.25, 0.96, 1.02, -1.45, -1.93, -1.66, 1.70, 2.03, 2.075, -1.80, -2.055]);
+    all.extend([0.25, 0.96, 1.02, -1.45, -1.93, -1.66, 1.70, 2.03, 2.075, -1.80, TAIL_M, NOSE_M]);
+    // Around the corners.
+    all.extend([0.006, 0.025, 0.05, 0.09].map(|d| TAIL_M + d));
+    all.extend([0.006, 0.05].map(|d| NOSE_M - d));
+    // Others where none of these is close by.
+    let between = (1..30).map(|k| mix(TAIL_M, NOSE_M, k as f32 / 30.0));
+    let far: Vec<f32> = between.filter(|z| all.iter().all(|other| (z - other).abs() > 0.065)).collect();
+    all.extend(far);
     all.sort_by(f32::total_cmp);
     all.dedup_by(|a, b| (*a - *b).abs() < 2.5e-3);
     all
@@ -176,7 +191,7 @@ fn skin(z: f32, k: usize) -> Material {
     let is_pillar = PILLARS_M.iter().any(|[middle, half]| (z - middle).abs() < *half);
     match k {
         3..=5 if (1.70..2.03).contains(&z) => Material::Headlight,
-        3..=5 if z < -1.80 => Material::TailLight,
+        4..=5 if z < -1.93 => Material::TailLight,
         0 => Material::Trim,
         1..=5 if is_gap => Material::Trim,
         GLASS_FROM..GLASS_TO if (-1.55..0.62).contains(&z) => {
@@ -201,13 +216,13 @@ fn body(mesh: &mut Mesh) {
         mesh.grid(
             [POINTS - 1, rows],
             |i, j| {
-                // On the left the rows run the other way, so that the front stays outside.
-                let z = if side > 0.0 { stations[rows - j] } else { stations[j] };
+                // On the right the rows run the other way, so that the front stays outside.
+                let z = if side > 0.0 { stations[j] } else { stations[rows - j] };
                 let p = section(z, i);
                 (p * flip, Vec2::new(z, p.y), Vec3::ONE)
             },
             |i, j| {
-                let (a, b) = if side > 0.0 { (rows - j, rows - j - 1) } else { (j, j + 1) };
+                let (a, b) = if side > 0.0 { (j, j + 1) } else { (rows - j, rows - j - 1) };
                 Some(skin((stations[a] + stations[b]) * 0.5, i))
             },
         );
@@ -222,8 +237,14 @@ fn body(mesh: &mut Mesh) {
             mesh.quad(paint, if front { corners } else { [q, p, s, r] });
         }
     }
-    // Nothing is seen through the arches.
-    mesh.block(plain(Material::Trim), [-0.72, 0.22, -1.75], [1.44, 0.45, 3.40]);
+    // Nothing is seen through the arches: engine, boot, wheel houses beside the rear seats, and the floor between.
+    let dark = plain(Material::Trim);
+    mesh.block(dark, [-0.72, 0.22, 0.66], [1.44, 0.45, 0.99]);
+    mesh.block(dark, [-0.72, 0.22, -1.75], [1.44, 0.45, 0.30]);
+    for x in [-0.72, 0.54] {
+        mesh.block(dark, [x, 0.22, -1.45], [0.18, 0.42, 0.61]);
+    }
+    mesh.block(dark, [-0.72, 0.22, -1.45], [1.44, 0.03, 2.11]);
 }
 
 /// A wheel around its hub, its outer side toward +x, or -x.
@@ -231,28 +252,21 @@ fn wheel(out: f32) -> Mesh {
     let mut wheel = Mesh::default();
     // Turned about the vertical, then laid on its side.
     let (r, half) = (WHEEL_M, 0.10);
-    let tire = [
-        [0.20, half - 0.012],
-        [0.235, half],
-        [r - 0.03, half],
-        [r, half - 0.035],
-        [r, -half + 0.035],
-        [r - 0.03, -half],
-    ];
+    let tire = [[0.20, half - 0.012], [0.235, half], [r - 0.03, half], [r, half - 0.035], [r, -half]];
     let mut up: Vec<[f32; 2]> = tire.to_vec();
     up.reverse();
-    wheel.lathe(plain(Material::Rubber), Vec3::ZERO, &up, 16);
+    wheel.lathe(plain(Material::Rubber), Vec3::ZERO, &up, 15);
     wheel.lathe(
         plain(Material::Alloy),
         Vec3::ZERO,
         &[[0.205, half - 0.014], [0.19, half - 0.04], [0.165, half - 0.055]],
-        20,
+        16,
     );
     wheel.lathe(
         tinted(Material::Trim, [0.5; 3]),
         Vec3::ZERO,
         &[[0.166, half - 0.075], [0.0, half - 0.08]],
-        20,
+        16,
     );
     wheel.lathe(
         plain(Material::Alloy),
@@ -285,9 +299,9 @@ fn mirror(mesh: &mut Mesh, center: Vec3) {
     let mut one = Mesh::default();
     let housing =
         [[0.071, -0.035], [0.078, -0.015], [0.076, 0.012], [0.063, 0.042], [0.036, 0.062], [0.0, 0.068]];
-    one.lathe(plain(Material::CarPaint), Vec3::ZERO, &housing, 14);
-    one.lathe(plain(Material::Trim), Vec3::ZERO, &[[0.062, -0.032], [0.071, -0.035]], 14);
-    one.lathe(plain(Material::Alloy), Vec3::ZERO, &[[0.0, -0.031], [0.062, -0.032]], 14);
+    one.lathe(plain(Material::CarPaint), Vec3::ZERO, &housing, 10);
+    one.lathe(plain(Material::Trim), Vec3::ZERO, &[[0.062, -0.032], [0.071, -0.035]], 10);
+    one.lathe(plain(Material::Alloy), Vec3::ZERO, &[[0.0, -0.031], [0.062, -0.032]], 10);
     // Turned to look ahead, and made wider.
     let wide = Vec3::new(1.38, 0.82, 1.0);
     for part in one.parts.values_mut() {
@@ -298,6 +312,18 @@ fn mirror(mesh: &mut Mesh, center: Vec3) {
         }
     }
     mesh.add(&one, [0.0; 3], 0.0);
+}
+
+/// A bright disc of a headlamp that looks ahead.
+fn reflector(mesh: &mut Mesh, center: Vec3) {
+    const SIDES: usize = 8;
+    let corners: Vec<Vec3> = (0..SIDES)
+        .map(|k| {
+            let angle = k as f32 / SIDES as f32 * std::f32::consts::TAU;
+            center + Vec3::new(ops::cos(angle), ops::sin(angle), 0.0) * 0.038
+        })
+        .collect();
+    mesh.polygon(plain(Material::Alloy), &corners);
 }
 
 /// Strokes of characters as on a plate, by seven segments: from x, y to x, y, in units of half a width and half a height.
@@ -357,8 +383,12 @@ fn fittings(mesh: &mut Mesh, number: u32, has_wheels: bool) {
             let (low, high) = (Vec3::new(a.min(b), y[0], z - 0.012), Vec3::new(a.max(b), y[1], z + 0.012));
             mesh.cuboid(plain(material), low, high, 0);
         };
-        cluster(Material::TailLight, [0.735, 0.875], [0.40, 0.715], TAIL_M);
-        cluster(Material::Headlight, [0.475, 0.555], [0.33, 0.60], NOSE_M);
+        cluster(Material::TailLight, [0.735, 0.875], [0.40, 0.69], TAIL_M);
+        cluster(Material::Headlight, [0.465, 0.565], [0.30, 0.57], NOSE_M);
+        // Reflectors behind the glass of the headlamps.
+        for at in [0.375, 0.495] {
+            reflector(mesh, Vec3::new(x * at, 0.515, NOSE_M + 0.0135));
+        }
         // Mirrors.
         mirror(mesh, Vec3::new(x * 0.935, 0.995, 0.64));
         mesh.bar(
@@ -376,12 +406,12 @@ fn fittings(mesh: &mut Mesh, number: u32, has_wheels: bool) {
             mesh.cuboid(paint, low, high, 0);
         };
         lamp(tinted(Material::Goods, [0.30, 0.31, 0.31]), [0.42, 0.50], [0.745, 0.795], 0.004);
-        lamp(tinted(Material::Goods, [0.32, 0.10, 0.012]), [0.52, 0.70], [0.745, 0.795], 0.004);
-        lamp(plain(Material::Trim), [0.40, 0.715], [0.798, 0.806], 0.006);
+        lamp(tinted(Material::Goods, [0.32, 0.10, 0.012]), [0.52, 0.675], [0.745, 0.795], 0.004);
+        lamp(plain(Material::Trim), [0.40, 0.69], [0.798, 0.806], 0.006);
         lamp(plain(Material::Trim), [0.508, 0.513], [0.735, 0.875], 0.006);
         for k in 0..4 {
             let y = 0.816 + 0.014 * k as f32;
-            lamp(plain(Material::TailLight), [0.42, 0.70], [y, y + 0.008], 0.008);
+            lamp(plain(Material::TailLight), [0.42, 0.675], [y, y + 0.008], 0.008);
         }
         // Door handles, in the paint, before dark hollows.
         for z in [0.02, -0.86] {
@@ -411,6 +441,7 @@ pub(crate) fn car(paint: usize) -> Mesh {
 fn painted(paint: usize, has_wheels: bool) -> Mesh {
     let mut mesh = Mesh::default();
     body(&mut mesh);
+    interior::interior(&mut mesh, paint as u32);
     fittings(&mut mesh, paint as u32, has_wheels);
     if let Some(part) = mesh.parts.get_mut(&Material::CarPaint) {
         for vertex in &mut part.vertices {
@@ -510,6 +541,14 @@ mod tests {
         assert!((4.1..4.3).contains(&size.z) && (1.7..2.1).contains(&size.x), "{size}");
         assert!((1.4..1.5).contains(&size.y) && low.y.abs() < 0.01, "{low} {size}");
         assert!(mesh.triangle_count() < 8000, "{}", mesh.triangle_count());
+    }
+
+    /// Fronts look outward: the volume that they enclose, with what is below the body, is that of a car, and not its negative.
+    #[test]
+    fn a_body_looks_outward() {
+        let mut mesh = Mesh::default();
+        body(&mut mesh);
+        assert!((5.0..9.0).contains(&mesh.volume_m3()), "{}", mesh.volume_m3());
     }
 
     /// One that drives is the same car, with its wheels beside it and its lamps lit.

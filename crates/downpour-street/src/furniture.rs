@@ -206,9 +206,9 @@ pub(crate) fn bollard() -> Mesh {
         [0.035, 0.935],
         [0.0, 0.95],
     ];
-    mesh.lathe(tinted(Material::Iron, IRON), Vec3::ZERO, &profile, 12);
+    mesh.lathe(tinted(Material::Iron, IRON), Vec3::ZERO, &profile, 10);
     let band = [[0.0655, 0.60], [0.0645, 0.66]];
-    mesh.lathe(tinted(Material::Iron, [0.55, 0.55, 0.52]), Vec3::ZERO, &band, 12);
+    mesh.lathe(tinted(Material::Iron, [0.55, 0.55, 0.52]), Vec3::ZERO, &band, 10);
     mesh
 }
 
@@ -275,7 +275,7 @@ pub(crate) fn table() -> Mesh {
         iron,
         Vec3::ZERO,
         &[[0.06, 0.05], [0.025, 0.10], [0.022, 0.66], [0.10, 0.70], [0.10, 0.715]],
-        10,
+        8,
     );
     for k in 0..3 {
         let angle = k as f32 * std::f32::consts::TAU / 3.0;
@@ -287,7 +287,7 @@ pub(crate) fn table() -> Mesh {
                 (out * 0.20 + Vec3::Y * 0.06, 0.016),
                 (out * 0.29, 0.014),
             ],
-            6,
+            5,
         );
     }
     mesh
@@ -300,11 +300,11 @@ pub(crate) fn chair() -> Mesh {
     let wood = tinted(Material::Wood, [0.40, 0.26, 0.15]);
     let p = |x: f32, y: f32, z: f32| Vec3::new(x, y, z);
     for x in [-0.19, 0.19] {
-        mesh.tube(iron, &[(p(x, 0.0, 0.20), 0.011), (p(x, 0.45, 0.17), 0.011)], 6);
+        mesh.tube(iron, &[(p(x, 0.0, 0.20), 0.011), (p(x, 0.45, 0.17), 0.011)], 5);
         mesh.tube(
             iron,
             &[(p(x, 0.0, -0.24), 0.011), (p(x, 0.45, -0.19), 0.011), (p(x, 0.88, -0.27), 0.011)],
-            6,
+            5,
         );
         mesh.bar(iron, p(x, 0.44, -0.19), p(x, 0.44, 0.18), 0.018);
     }
@@ -328,13 +328,13 @@ pub(crate) fn bicycle() -> Mesh {
         for (radius, thick, sort) in
             [(0.33, 0.016, tinted(Material::Rubber, [1.0; 3])), (0.305, 0.010, steel)]
         {
-            let ring: Vec<(Vec3, f32)> = (0..=24)
+            let ring: Vec<(Vec3, f32)> = (0..=20)
                 .map(|k| {
-                    let angle = k as f32 / 24.0 * std::f32::consts::TAU;
+                    let angle = k as f32 / 20.0 * std::f32::consts::TAU;
                     (p(x + radius * ops::cos(angle), 0.345 + radius * ops::sin(angle)), thick)
                 })
                 .collect();
-            mesh.tube(sort, &ring, 6);
+            mesh.tube(sort, &ring, 5);
         }
         for k in 0..10 {
             let angle = k as f32 / 10.0 * std::f32::consts::TAU;

@@ -278,11 +278,16 @@ impl Material {
             Self::LampGlass => glow(look([0.72, 0.71, 0.66], 0.3), WARM, LAMP_CD_M2),
             // The clear coat's gloss over the base.
             Self::CarPaint => look([1.0; 3], 0.10),
-            Self::CarGlass => look([0.014, 0.016, 0.017], 0.04),
+            // Laminated and tinted: with both of its sides it lets 70 % pass.
+            Self::CarGlass => Look {
+                transmission: 1.0,
+                more: json!({"doubleSided": true}),
+                ..look([0.72, 0.77, 0.74], 0.03)
+            },
             Self::Trim => look([0.022, 0.022, 0.024], 0.55),
             Self::Rubber => look([0.032, 0.032, 0.033], 0.88),
             Self::Alloy => Look { metallic: 1.0, ..look([0.50, 0.50, 0.51], 0.35) },
-            Self::Headlight => look([0.16, 0.165, 0.17], 0.12),
+            Self::Headlight => look([0.05, 0.052, 0.055], 0.06),
             Self::HeadlightLit => glow(look([0.50, 0.52, 0.53], 0.08), [1.0, 0.93, 0.82], HEADLIGHT_CD_M2),
             Self::TailLight => look([0.10, 0.007, 0.007], 0.10),
             Self::TailLightLit => glow(look([0.22, 0.012, 0.010], 0.12), [1.0, 0.03, 0.02], TAIL_LIGHT_CD_M2),

@@ -79,6 +79,19 @@ impl Mesh {
         self.parts.values().map(|part| part.indices.len() / 3).sum()
     }
 
+    /// Volume that it encloses, m^3: less than 0 where its fronts look inward.
+    #[cfg(test)]
+    pub(crate) fn volume_m3(&self) -> f32 {
+        let of_part = |part: &Part| -> f32 {
+            let corner = |k: u32| part.vertices[k as usize].position;
+            part.indices
+                .chunks_exact(3)
+                .map(|t| corner(t[0]).dot(corner(t[1]).cross(corner(t[2]))) / 6.0)
+                .sum()
+        };
+        self.parts.values().map(of_part).sum()
+    }
+
     /// A flat quad, corners counter-clockwise, with given coordinates.
     pub(crate) fn quad_uv(&mut self, paint: Paint, corners: [Vec3; 4], uvs: [Vec2; 4]) {
         let normal = (corners[2] - corners[0]).cross(corners[3] - corners[1]).normalize_or_zero();

@@ -16,7 +16,7 @@ shared_constants! {
     SPLASH_CONSTANTS at "sim/splash_constants" {
         /// Root of the Weber number above which a drop splashes on a film.
         SPLASH_THRESHOLD: f32 = 20.0;
-        /// Time at which a crown is highest, in drop diameters over the drop's speed.
+        /// Time at which the crown of a drop far above the threshold is highest, in drop diameters over the drop's speed.
         SPLASH_RISE_TIMES: f32 = 12.0;
         /// Fraction of its duration in which a crown rises.
         SPLASH_RISE_SHARE: f32 = 0.125;

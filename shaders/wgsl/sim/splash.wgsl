@@ -14,7 +14,7 @@ struct SplashFrame {
     now: f32,
     // Root of the Weber number of a drop of 1 m at 1 m/s.
     strength: f32,
-    // Radius of the crown of a drop of 1 m, m.
+    // Radius of the crown of a drop of 1 m far above the threshold, m.
     radius: f32,
     // Distance up to which crowns are listed: by their radius, and in any case, m.
     per_radius: f32,
@@ -31,6 +31,12 @@ struct SplashFrame {
 // Root of the Weber number of a drop that meets a surface with a speed toward it.
 fn splash_parameter(strength: f32, diameter: f32, speed: f32) -> f32 {
     return strength * speed * sqrt(diameter);
+}
+
+// Part of the energy of a drop that is beyond the energy of one that just splashes, from the root of its Weber number.
+fn splash_surplus(root: f32) -> f32 {
+    let ratio = SPLASH_THRESHOLD / max(root, SPLASH_THRESHOLD);
+    return 1.0 - ratio * ratio;
 }
 
 // Half the height of a crown at a stage, in its radius.
@@ -50,17 +56,17 @@ fn splash_crown(drop: EyeDrop, normal: vec3f) -> EyeDrop {
     crown.diameter = 0.0;
     let age = splash_frame.now - drop.present.y;
     let toward = -dot(drop.velocity, normal);
-    if normal.y < SPLASH_LEVEL || toward <= 0.0
-        || splash_parameter(splash_frame.strength, drop.diameter, toward) <= SPLASH_THRESHOLD {
+    let surplus = splash_surplus(splash_parameter(splash_frame.strength, drop.diameter, toward));
+    if normal.y < SPLASH_LEVEL || surplus <= 0.0 {
         return crown;
     }
-    let duration = min(SPLASH_RISE_TIMES * drop.diameter / toward / SPLASH_RISE_SHARE, SPLASH_MAX_S);
+    let duration = min(SPLASH_RISE_TIMES * surplus * drop.diameter / toward / SPLASH_RISE_SHARE, SPLASH_MAX_S);
     if age < 0.0 || age >= duration {
         return crown;
     }
     let chance = rng_unit(rng_draw(vec2u(drop.id_low, drop.id ^ drop.id_low), 0u, 0u, SPLASH_SIZE).x);
     let random = SPLASH_MIN_SIZE + (SPLASH_MAX_SIZE - SPLASH_MIN_SIZE) * chance;
-    let radius = splash_frame.radius * drop.diameter * sqrt(sqrt(drop.diameter)) * random;
+    let radius = splash_frame.radius * drop.diameter * sqrt(sqrt(drop.diameter) * surplus) * random;
     let offset = drop.offset + drop.velocity * drop.present.y + normal * (radius * splash_middle(age / duration));
     let range = min(radius * splash_frame.per_radius, splash_frame.farthest);
     if sqrt(dot(offset, offset)) >= range || dot(splash_frame.pane.xyz, offset) < splash_frame.pane.w {

@@ -23,7 +23,7 @@ use downpour_sim::field::{
 };
 use downpour_sim::gpu::{FieldPipeline, FieldSearch, GpuSimError, HolesOnGpu, ObstaclesOnGpu};
 use downpour_sim::impacts::SplashOptions;
-use downpour_sim::impacts::splash_frame::{splash_middle, splash_parameter};
+use downpour_sim::impacts::splash_frame::{splash_middle, splash_parameter, splash_surplus};
 use downpour_sim::shelter::{Holes, Obstacles};
 use downpour_sim::view::View;
 use downpour_trace::builder::{MeshPart, SceneBuilder};
@@ -151,6 +151,13 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &[Uniform(1.0e5, 1.0e7), Uniform(1.0e-4, 6.0e-3), Uniform(0.1, 12.0)],
             Tol::relative(4.0e-6, 0.0, "four square roots and three products"),
             |a| splash_parameter(a.f32(), a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "splash_surplus",
+            &SPLASH,
+            &[Uniform(0.0, 90.0)],
+            Tol::absolute(1.0e-6, "a quotient and its square below 1"),
+            |a| splash_surplus(a.f32()).words(),
         ),
         FunctionCase::new(
             "splash_middle",

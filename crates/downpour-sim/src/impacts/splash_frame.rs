@@ -67,6 +67,13 @@ pub fn splash_parameter(strength: f32, diameter: f32, speed: f32) -> f32 {
     strength * speed * diameter.sqrt()
 }
 
+/// Part of the energy of a drop that is beyond the energy of one that just splashes, from the root of its Weber number.
+#[must_use]
+pub fn splash_surplus(root: f32) -> f32 {
+    let ratio = SPLASH_THRESHOLD / root.max(SPLASH_THRESHOLD);
+    1.0 - ratio * ratio
+}
+
 /// Half the height of a crown at a stage, in its radius.
 #[must_use]
 pub fn splash_middle(stage: f32) -> f32 {
@@ -94,18 +101,18 @@ impl SplashFrame {
         let met = drop.present[1];
         let velocity = Vec3::from(drop.velocity);
         let (age, toward) = (self.now - met, -velocity.dot(normal));
-        let splashes =
-            toward > 0.0 && splash_parameter(self.strength, drop.diameter, toward) > SPLASH_THRESHOLD;
-        if normal.y < SPLASH_LEVEL || !splashes {
+        let surplus = splash_surplus(splash_parameter(self.strength, drop.diameter, toward));
+        if normal.y < SPLASH_LEVEL || surplus <= 0.0 {
             return None;
         }
-        let duration = (SPLASH_RISE_TIMES * drop.diameter / toward / SPLASH_RISE_SHARE).min(SPLASH_MAX_S);
+        let duration =
+            (SPLASH_RISE_TIMES * surplus * drop.diameter / toward / SPLASH_RISE_SHARE).min(SPLASH_MAX_S);
         if !(0.0..duration).contains(&age) {
             return None;
         }
         let [chance, ..] = rng_draw([drop.id_low, drop.id ^ drop.id_low], 0, 0, SPLASH_SIZE).map(rng_unit);
         let random = SPLASH_MIN_SIZE + (SPLASH_MAX_SIZE - SPLASH_MIN_SIZE) * chance;
-        let radius = self.radius * drop.diameter * drop.diameter.sqrt().sqrt() * random;
+        let radius = self.radius * drop.diameter * (drop.diameter.sqrt() * surplus).sqrt() * random;
         let offset =
             Vec3::from(drop.offset) + velocity * met + normal * (radius * splash_middle(age / duration));
         let range = (radius * self.per_radius).min(self.farthest);
@@ -140,8 +147,10 @@ mod tests {
             let found = splash_parameter(law.strength() as f32, diameter as f32, speed as f32);
             assert!((f64::from(found) / law.weber_root(diameter, speed) - 1.0).abs() < 1.0e-5, "{diameter}");
             let expected = law.splash(diameter, speed).map(|splash| splash.radius_m);
-            let found = law.unit_radius() * diameter * diameter.sqrt().sqrt();
-            assert!(expected.is_none_or(|radius| (found / radius - 1.0).abs() < 1.0e-9), "{diameter}");
+            let surplus = f64::from(splash_surplus(found));
+            assert_eq!(expected.is_some(), surplus > 0.0, "{diameter}");
+            let found = law.unit_radius() * diameter * (diameter.sqrt() * surplus).sqrt();
+            assert!(expected.is_none_or(|radius| (found / radius - 1.0).abs() < 1.0e-5), "{diameter}");
         }
         for k in 0..=100 {
             let stage = f64::from(k) / 100.0;
