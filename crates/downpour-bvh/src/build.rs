@@ -74,6 +74,46 @@ impl Bvh {
     }
 }
 
+impl Bvh {
+    /// The hierarchy over the triangles of this one and, behind them, those of another, below a root of its own: for what stands still and
+    /// what moves through it, where only the second is built anew. Nodes of this one are those behind the root.
+    ///
+    /// ```
+    /// use downpour_bvh::Bvh;
+    /// let triangle = |z: f32| [[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]];
+    /// let all = Bvh::new(&[triangle(2.0)]).joined(&Bvh::new(&[triangle(1.0)]));
+    /// let hit = all.hit([0.2, 0.2, 0.0], [0.0, 0.0, 1.0], 0.0).expect("both are ahead");
+    /// assert_eq!((hit.distance, hit.triangle), (1.0, 1));
+    /// ```
+    #[must_use]
+    pub fn joined(&self, other: &Self) -> Self {
+        let mut root = BvhNode::EMPTY;
+        let mut nodes = Vec::with_capacity(1 + self.nodes.len() + other.nodes.len());
+        nodes.push(root);
+        for (part, first) in [(self, 0), (other, self.triangles.len() as u32)] {
+            let at = nodes.len() as u32;
+            // Where a part has no triangles nothing is to be visited.
+            if let Some(top) = part.nodes.first().filter(|_| !part.triangles.is_empty()) {
+                let k = root.child.iter().take_while(|&&child| child != BVH_NO_CHILD).count();
+                root.child[k] = at;
+                root.set_bounds(k, &top.whole());
+            }
+            nodes.extend(part.nodes.iter().map(|node| {
+                let child = node.child.map(|child| match child {
+                    BVH_NO_CHILD => child,
+                    inner if inner < BVH_LEAF => inner + at,
+                    leaf => leaf + first,
+                });
+                BvhNode { child, ..*node }
+            }));
+        }
+        nodes[0] = root;
+        let count = self.triangles.len() as u32;
+        let behind = other.triangles.iter().map(|of| BvhTriangle { index: of.index + count, ..*of });
+        Self { nodes, triangles: self.triangles.iter().copied().chain(behind).collect() }
+    }
+}
+
 impl BvhNode {
     fn set_bounds(&mut self, k: usize, bounds: &Bounds) {
         [self.low_x[k], self.low_y[k], self.low_z[k]] = bounds.low;

@@ -474,6 +474,43 @@ mod tests {
         }
     }
 
+    /// Two hierarchies below one root are as good as one over all their triangles, and have their triangles one behind the other; so is one
+    /// beside none, and one of a chain that is as deep as may be.
+    #[test]
+    fn joined_hierarchies_are_met_as_one() {
+        let corners = soup(600);
+        let sizes = std::iter::successors(Some(1.0f32), |size| Some(size * 1.08)).take(700);
+        let chain: Vec<[[f32; 3]; 3]> = sizes
+            .map(|size| [[-size, 0.0, -size], [size, 0.1 * size, -size], [0.0, -0.1 * size, size]])
+            .collect();
+        for (first, second) in [
+            corners.split_at(450),
+            corners.split_at(0),
+            corners.split_at(600),
+            (&corners, &chain),
+            (&chain, &corners),
+        ] {
+            let [a, b] = [first, second].map(Bvh::new);
+            let joined = a.joined(&b);
+            let all = [first, second].concat();
+            let (count, nodes) = (first.len(), a.nodes.len());
+            assert_eq!(joined.triangles.len(), all.len());
+            // What is of the first stays as it is, but for where its nodes' children are.
+            assert!(joined.triangles[..count] == a.triangles[..]);
+            assert!(
+                joined.nodes[1..1 + nodes]
+                    .iter()
+                    .zip(&a.nodes)
+                    .all(|(x, y)| x.low_x == y.low_x && x.high_z == y.high_z)
+            );
+            assert!(joined.triangles[count..].iter().all(|t| all[t.index as usize][0] == t.corner));
+            for ray in rays(400, -2.0, 6.0) {
+                let expected = brute_force(&joined, ray, 1.0e-4).first().map(|hit| hit.0);
+                assert_eq!(joined.hit(ray.0, ray.1, 1.0e-4).map(|hit| hit.distance), expected, "{ray:?}");
+            }
+        }
+    }
+
     /// Corners that are huge or no numbers do no harm, and what is beside them is found.
     #[test]
     fn strange_corners_do_no_harm() {

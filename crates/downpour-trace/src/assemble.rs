@@ -16,7 +16,7 @@ use downpour_shaders::render::scene::{
 };
 use glam::{Affine3A, DVec3};
 
-use crate::builder::{MeshPart, SceneBuilder};
+use crate::builder::{MeshPart, SceneBuilder, ScenePart};
 use crate::material::{MaterialLook, TextureSlot, TextureUse};
 use downpour_render::light::LightSource;
 
@@ -49,10 +49,23 @@ impl SceneLooks {
         Self { builder, materials, fallback }
     }
 
-    /// Builder of scenes of these materials and textures.
+    /// Builder of scenes of these materials and textures, which are shared.
     #[must_use]
     pub fn builder(&self) -> SceneBuilder {
         self.builder.clone()
+    }
+
+    /// The meshes of a pose whose node is `wanted`, as a part of scenes of these materials, relative to `origin`, meters.
+    pub(crate) fn part(
+        &self,
+        scene: &Scene,
+        pose: &Pose,
+        origin: DVec3,
+        wanted: impl Fn(usize) -> bool,
+    ) -> ScenePart {
+        let mut builder = self.builder();
+        builder.add_meshes(self, scene, pose, origin, wanted);
+        builder.take_part()
     }
 
     /// The builder of the only scene of them: without a copy of the textures.
@@ -62,13 +75,17 @@ impl SceneLooks {
 }
 
 impl SceneBuilder {
-    /// Adds all that a pose of a scene shows to the builder of its looks, relative to `origin`, meters: far from the world's origin
-    /// single precision is coarse, near the eye it need not be.
-    ///
-    /// Lights keep their numbers: 1 is what the sky's radiance of 1 is, so that a lamp of `I` candela lights a surface
-    /// at a distance `r` with `I / r^2` where radiance is in cd/m^2.
-    pub fn add_pose(&mut self, looks: &SceneLooks, scene: &Scene, pose: &Pose, origin: DVec3) {
-        for instance in &pose.instances {
+    /// Adds the meshes of a pose of a scene whose node is `wanted` to the builder of its looks, relative to `origin`, meters: far from the
+    /// world's origin single precision is coarse, near the eye it need not be.
+    pub(crate) fn add_meshes(
+        &mut self,
+        looks: &SceneLooks,
+        scene: &Scene,
+        pose: &Pose,
+        origin: DVec3,
+        wanted: impl Fn(usize) -> bool,
+    ) {
+        for instance in pose.instances.iter().filter(|instance| wanted(instance.node)) {
             let Some(mesh) = scene.meshes.get(instance.mesh) else { continue };
             let instance = relative(instance, pose, origin);
             for primitive in &mesh.primitives {
@@ -89,6 +106,13 @@ impl SceneBuilder {
                 self.add_mesh(&part, &Affine3A::IDENTITY);
             }
         }
+    }
+
+    /// Adds the lamps of a pose of a scene, relative to `origin`, meters.
+    ///
+    /// They keep their numbers: 1 is what the sky's radiance of 1 is, so that a lamp of `I` candela lights a surface
+    /// at a distance `r` with `I / r^2` where radiance is in cd/m^2.
+    pub(crate) fn add_lamps(&mut self, scene: &Scene, pose: &Pose, origin: DVec3) {
         for placed in &pose.lights {
             let Some(light) = scene.lights.get(placed.light) else { continue };
             self.add_light(light_source(light, placed, pose, origin));

@@ -1,21 +1,23 @@
 //! A scene being put together: meshes, materials, textures and lamps become the buffers of [`data`](crate::data).
 
 mod lamp_glass;
+mod part;
 mod relief;
 mod texture;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use downpour_bvh::Bvh;
-use downpour_shaders::render::scene::{SCENE_LAMP_GLASS, SCENE_SPOT_GLASS, SCENE_UNLIT};
+use downpour_shaders::render::scene::{SCENE_LAMP_GLASS, SCENE_SPOT_GLASS};
 use glam::{Affine3A, Vec2, Vec3, Vec4};
 
 use crate::data::{RenderCorner, SceneData};
 use crate::emitter::{self, mean_emission};
 use crate::material::{MaterialLook, TextureSlot};
 use crate::sky_light::SkyLight;
+use crate::still_part::StillPart;
 use downpour_render::light::LightSource;
+pub(crate) use part::ScenePart;
 
 /// Triangle mesh to be added to a scene, in its own space.
 #[derive(Clone, Copy, Debug)]
@@ -51,8 +53,10 @@ pub struct SceneBuilder {
     positions: Vec<[[f32; 3]; 3]>,
     materials: Vec<MaterialLook>,
     slots: Vec<TextureSlot>,
-    texels: Vec<u32>,
+    texels: Arc<Vec<u32>>,
     lights: Vec<LightSource>,
+    /// What stands still in a scene that moves.
+    still: Option<Arc<ScenePart>>,
 }
 
 impl SceneBuilder {
@@ -65,7 +69,7 @@ impl SceneBuilder {
     /// Adds the texels of a texture with all its levels, and gives the index of the first.
     pub(crate) fn push_texels(&mut self, texels: &[u32]) -> u32 {
         let first = self.texels.len() as u32;
-        self.texels.extend_from_slice(texels);
+        Arc::make_mut(&mut self.texels).extend_from_slice(texels);
         first
     }
 
@@ -135,44 +139,56 @@ impl SceneBuilder {
     /// Number of triangles.
     #[must_use]
     pub fn triangle_count(&self) -> usize {
-        self.positions.len()
+        self.positions.len() + self.still.as_ref().map_or(0, |still| still.triangle_count())
+    }
+
+    /// Takes the triangles that are there so far as a part of scenes of these materials.
+    pub(crate) fn take_part(&mut self) -> ScenePart {
+        self.have_a_material();
+        let (positions, corners) = (std::mem::take(&mut self.positions), std::mem::take(&mut self.corners));
+        ScenePart::new(&positions, &corners, &self.materials)
+    }
+
+    /// Puts a part of the scene, which stands still, before all other triangles.
+    pub(crate) fn set_still(&mut self, still: Arc<ScenePart>) {
+        self.still = Some(still);
+    }
+
+    /// A scene has one material at least.
+    fn have_a_material(&mut self) {
+        if self.materials.is_empty() {
+            self.materials.push(MaterialLook::default());
+        }
     }
 
     /// Builds the hierarchy and the buffers.
     #[must_use]
     pub fn build(mut self, sky: &SkyLight) -> SceneData {
-        if self.materials.is_empty() {
-            self.materials.push(MaterialLook::default());
-        }
-        if self.positions.is_empty() {
+        self.have_a_material();
+        if self.triangle_count() == 0 {
             // A triangle far below and too small to be seen: a hierarchy has at least one.
             self.positions.push([[0.0, -1.0e6, 0.0], [1.0e-3, -1.0e6, 0.0], [0.0, -1.0e6, 1.0e-3]]);
             self.corners.push([RenderCorner { normal: [0.0, 1.0, 0.0], ..RenderCorner::default() }; 3]);
         }
-        let shining: Vec<usize> = (0..self.corners.len()).filter(|&k| self.shines(k)).collect();
-        let owners = lamp_glass::owners(&self.positions, &shining, &self.lights);
-        self.mark_lamp_glass(&owners);
-        let bvh = Bvh::new(&self.positions);
-        let mut triangles = bvh.triangles;
-        let last_material = self.materials.len() as u32 - 1;
-        let mut corners = Vec::with_capacity(3 * triangles.len());
-        let mut emitters = Vec::new();
-        let mut glass: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
-        for (leaf, triangle) in (0u32..).zip(&mut triangles) {
-            let index = triangle.index as usize;
-            for mut corner in self.corners[index] {
-                corner.material = corner.material.min(last_material);
-                corners.push(corner);
-            }
-            triangle.index = leaf;
-            let material = self.corners[index][0].material.min(last_material);
-            triangle.lets_through = u32::from(self.materials[material as usize].lets_through());
-            match owners.get(&index) {
-                Some(&lamp) => glass.entry(lamp).or_default().push(leaf),
-                None if shining.binary_search(&index).is_ok() => emitters.push(leaf),
-                None => {}
+        let own = self.take_part();
+        let still = self.still.take();
+        let ScenePart { mut bvh, mut corners, shining } = match &still {
+            Some(still) => still.joined(&own),
+            None => own,
+        };
+        let owners = lamp_glass::owners(&bvh.triangles, &shining, &self.lights);
+        let glass_looks = self.lamp_glass_looks(&corners, &owners);
+        for &(leaf, material) in &glass_looks {
+            bvh.triangles[leaf as usize].lets_through = 1;
+            for corner in &mut corners[3 * leaf as usize..3 * leaf as usize + 3] {
+                corner.material = material;
             }
         }
+        let mut glass: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
+        for (&leaf, &lamp) in &owners {
+            glass.entry(lamp).or_default().push(leaf);
+        }
+        let emitters: Vec<u32> = shining.into_iter().filter(|leaf| !owners.contains_key(leaf)).collect();
         let mut table: Vec<[u32; 4]> = Vec::new();
         let slots = (self.materials.len() * crate::material::MATERIAL_ROWS) as u32;
         for material in &self.materials {
@@ -186,14 +202,19 @@ impl SceneBuilder {
             table.extend(light.rows());
         }
         if self.texels.is_empty() {
-            self.texels.push(u32::MAX);
+            self.push_texels(&[u32::MAX]);
         }
+        let still = still.map(|part| {
+            let count = part.triangle_count() as u32;
+            let glass = glass_looks.into_iter().filter(|&(leaf, _)| leaf < count).collect();
+            Arc::new(StillPart { part, glass, texels: self.texels.len() })
+        });
         let mut data = SceneData {
             nodes: Arc::new(bvh.nodes),
-            triangles: Arc::new(triangles),
+            triangles: Arc::new(bvh.triangles),
             corners: Arc::new(corners),
             table,
-            texels: Arc::new(self.texels),
+            texels: self.texels,
             slots,
             lights,
             light_count: self.lights.len() as u32,
@@ -209,6 +230,7 @@ impl SceneBuilder {
             sky_irradiance: sky.irradiance,
             impostors: None,
             impostor_picture: Arc::default(),
+            still,
             #[cfg(feature = "wgpu")]
             ripples: None,
         };
@@ -220,37 +242,36 @@ impl SceneBuilder {
         }
         let words = emitter::words(&data, &emitters);
         if !words.is_empty() {
-            let texels = Arc::make_mut(&mut data.texels);
-            data.emitters = texels.len() as u32;
-            texels.extend(words);
+            data.emitters = data.texels.len() as u32;
+            match Arc::get_mut(&mut data.texels) {
+                Some(texels) => texels.extend(words),
+                // Textures that other frames share.
+                None => data.texels = Arc::new([&data.texels[..], &words].concat()),
+            }
         }
         data
     }
 
-    /// True if triangle `k` shines.
-    fn shines(&self, k: usize) -> bool {
-        let material = self.materials.get(self.corners[k][0].material as usize);
-        material
-            .is_some_and(|look| look.flags & SCENE_UNLIT == 0 && look.emission.iter().any(|&part| part > 0.0))
-    }
-
-    /// Gives triangles that are the glass of lamps a material of their own.
-    fn mark_lamp_glass(&mut self, owners: &BTreeMap<usize, usize>) {
-        let mut marked: BTreeMap<(u32, u32), u32> = BTreeMap::new();
-        for (&triangle, &lamp) in owners {
-            let of = self.corners[triangle][0].material;
+    /// Materials of the glass of lamps, by triangle: each has one of its own, which is made here.
+    fn lamp_glass_looks(
+        &mut self,
+        corners: &[RenderCorner],
+        owners: &BTreeMap<u32, usize>,
+    ) -> Vec<(u32, u32)> {
+        let mut made: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+        let look = |(&leaf, &lamp): (&u32, &usize)| {
+            let of = corners[3 * leaf as usize].material;
             let flag = match self.lights[lamp] {
                 LightSource::Spot { .. } => SCENE_SPOT_GLASS,
                 _ => SCENE_LAMP_GLASS,
             };
-            let own = *marked.entry((of, flag)).or_insert_with(|| {
+            let own = *made.entry((of, flag)).or_insert_with(|| {
                 let look = self.materials[of as usize];
                 self.materials.push(MaterialLook { flags: look.flags | flag, ..look });
                 self.materials.len() as u32 - 1
             });
-            for corner in &mut self.corners[triangle] {
-                corner.material = own;
-            }
-        }
+            (leaf, own)
+        };
+        owners.iter().map(look).collect()
     }
 }

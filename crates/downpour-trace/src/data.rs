@@ -18,6 +18,7 @@ use glam::Vec3;
 
 use crate::billboards::Impostors;
 use crate::skylight::skylight_radius;
+use crate::still_part::StillPart;
 
 /// Part of the rays over which the filter takes means that one ray is.
 fn window_fraction(rays: u32, spacing: u32) -> f32 {
@@ -153,6 +154,8 @@ pub struct SceneData {
     pub impostors: Option<Arc<Impostors>>,
     /// The reflection buffer of a frame on the CPU: [`SceneView::mirrored_picture`](crate::scene::SceneView::mirrored_picture).
     pub impostor_picture: Arc<Vec<[u32; 2]>>,
+    /// What stands still in a scene that moves; `None` for one that does not.
+    pub(crate) still: Option<Arc<StillPart>>,
     /// Ripples that a device holds: the table shows level water in their place.
     #[cfg(feature = "wgpu")]
     pub ripples: Option<crate::gpu::RipplesOnGpu>,

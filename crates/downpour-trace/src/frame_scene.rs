@@ -10,6 +10,7 @@ mod error;
 mod eye;
 mod flash;
 mod framing;
+mod kept;
 mod light;
 mod sky;
 #[cfg(test)]
@@ -18,7 +19,6 @@ mod tests;
 use downpour_math::color::color_luminance;
 use downpour_math::in_range;
 use std::borrow::Cow;
-use std::sync::Arc;
 
 use downpour_scene::scene::Pose;
 use downpour_sim::field::FallingDrop;
@@ -37,6 +37,7 @@ use downpour_render::tone::{GRAY, tone_automatic_exposure};
 pub use error::FrameSceneError;
 pub use eye::CameraChoice;
 use eye::CameraView;
+use kept::KeptScene;
 
 /// Maximum number of triangles of a scene, all copies counted.
 pub const MAX_TRIANGLES: u64 = 1 << 22;
@@ -93,8 +94,8 @@ pub struct FrameScene {
     pub has_sun: bool,
     /// Number of meshes left out because their transform has no inverse or is out of range.
     pub left_out: usize,
-    /// Materials and textures of a scene that moves.
-    looks: Option<Arc<SceneLooks>>,
+    /// What of a scene that moves is the same at all times.
+    kept: Option<KeptScene>,
 }
 
 /// Sets light and water on surfaces to a time in seconds, and their reflections, which also depend on the eye.
@@ -127,22 +128,22 @@ impl FrameScene {
     /// [`FrameSceneError::OverLimit`] above [`MAX_TRIANGLES`] or [`MAX_LIGHTS`], [`FrameSceneError::Memory`], or
     /// [`RenderError`]: a picture outside [`PIXELS`](downpour_render::camera::PIXELS), a time beyond [`LATEST_S`], or an invalid camera.
     pub fn new(weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, FrameSceneError> {
-        Self::with_looks(weather, loaded, time_s, None)
+        Self::with_kept(weather, loaded, time_s, None)
     }
 
-    /// The same scene, which moves, at another time in seconds: its materials and textures are those of this one.
+    /// The same scene, which moves, at another time in seconds: materials, textures and what stands still are those of this one.
     ///
     /// # Errors
     /// As [`FrameScene::new`].
     pub fn moved(&self, weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, FrameSceneError> {
-        Self::with_looks(weather, loaded, time_s, self.looks.clone())
+        Self::with_kept(weather, loaded, time_s, self.kept.as_ref())
     }
 
-    fn with_looks(
+    fn with_kept(
         weather: &Weather,
         loaded: &Loaded,
         time_s: f64,
-        looks: Option<Arc<SceneLooks>>,
+        kept: Option<&KeptScene>,
     ) -> Result<Self, FrameSceneError> {
         check_size(weather.size)?;
         in_range("time", time_s, "s", &(-LATEST_S..=LATEST_S), 1.0, "-1e6 to 1e6")
@@ -152,10 +153,16 @@ impl FrameScene {
         let seen = CameraView::of(weather, loaded, &pose, time_s);
         let anchor = seen.as_ref().map_or_else(|| middle(loaded, &pose), |seen| seen.eye);
         let origin = origin_near(anchor);
-        let mut looks = looks.unwrap_or_else(|| Arc::new(SceneLooks::new(&loaded.scene)));
-        let is_kept = loaded.is_animated();
-        let mut builder = if is_kept { looks.builder() } else { Arc::make_mut(&mut looks).take_builder() };
-        builder.add_pose(&looks, &loaded.scene, &pose, origin);
+        let kept = loaded.is_animated().then(|| KeptScene::of(kept, loaded, &pose, origin));
+        let mut builder = if let Some(kept) = &kept {
+            kept.builder(loaded, &pose)
+        } else {
+            let mut looks = SceneLooks::new(&loaded.scene);
+            let mut builder = looks.take_builder();
+            builder.add_meshes(&looks, &loaded.scene, &pose, origin, |_| true);
+            builder
+        };
+        builder.add_lamps(&loaded.scene, &pose, origin);
         if let Some(sun) = loaded.sun {
             builder.add_light(light::sun_light(&sun));
         }
@@ -192,7 +199,7 @@ impl FrameScene {
             lamps: pose.lights.len(),
             has_sun: loaded.sun.is_some(),
             left_out: pose.left_out,
-            looks: is_kept.then_some(looks),
+            kept,
         })
     }
 

@@ -73,6 +73,11 @@ impl MaterialLook {
         self.flags & flags != 0 || self.transmission > 0.0
     }
 
+    /// True if it lights the scene.
+    pub(crate) fn shines(&self) -> bool {
+        self.flags & SCENE_UNLIT == 0 && self.emission.iter().any(|&part| part > 0.0)
+    }
+
     pub(crate) fn rows(&self, slots: u32) -> [[u32; 4]; MATERIAL_ROWS] {
         let bits = |v: [f32; 4]| v.map(f32::to_bits);
         let [r, g, b] = self.emission;

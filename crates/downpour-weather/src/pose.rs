@@ -10,6 +10,15 @@ impl Loaded {
         self.animations.iter().any(Option::is_some) || !self.moving.is_empty()
     }
 
+    /// For each node of the scene, whether what it shows may move: it, a node above it or a joint of its skin is animated, or is one of a
+    /// model whose place has keys.
+    #[must_use]
+    pub fn moving_nodes(&self) -> Vec<bool> {
+        let animations: Vec<usize> = self.animations.iter().copied().flatten().collect();
+        let placed: Vec<usize> = self.moving.iter().flat_map(|(_, nodes)| nodes).copied().collect();
+        self.scene.moving_nodes(&animations, &placed)
+    }
+
     /// Pose of the scene at a time in seconds, of the weather that it was loaded for: animations have run for that time at their
     /// speed, and models are where their keys say.
     #[must_use]

@@ -228,6 +228,36 @@ fn a_kept_plate_is_refined_on_a_cpu() {
     a_kept_plate_is_refined(&Device::cpu());
 }
 
+/// A frame of a scene in which something moves is the same alone as after others, with which it shares what stands still.
+fn what_moves_is_where_it_would_be_alone(device: &Device) {
+    let folder = folder();
+    let both = "[[model]]\nfile = 'floor.gltf'\n[[model]]\nfile = 'floor.gltf'\n\
+                translation_m = [[0, [-2, 0.4, 0]], [1, [2, 0.4, 0]]]\n";
+    let weather = changed(&[("[[model]]\nfile = 'floor.gltf'\n", both)]);
+    let opened = || {
+        let mut renderer = opened(&folder, &weather, &fast(), device.clone());
+        renderer.set_exposure(Some(1.0));
+        renderer
+    };
+    let mut renderer = opened();
+    let frames = [0.2, 0.5, 0.4].map(|time_s| (time_s, bits(&renderer.frame(time_s).unwrap())));
+    for (time_s, found) in &frames {
+        assert!(*found == bits(&opened().frame(*time_s).unwrap()), "{time_s} s");
+    }
+    assert!(frames[0].1 != frames[1].1);
+    // Another rain changes nothing of the scene.
+    renderer
+        .set_weather(changed(&[("file = 'floor.gltf'\n", &both[10..]), ("120", "1")]), &files(&folder))
+        .unwrap();
+    renderer.set_weather(weather.clone(), &files(&folder)).unwrap();
+    assert!(bits(&renderer.frame(0.2).unwrap()) == frames[0].1);
+}
+
+#[test]
+fn what_moves_is_where_it_would_be_alone_on_a_cpu() {
+    what_moves_is_where_it_would_be_alone(&Device::cpu());
+}
+
 #[cfg(feature = "wgpu")]
 #[test]
 fn what_is_kept_follows_on_a_gpu() {
@@ -235,6 +265,7 @@ fn what_is_kept_follows_on_a_gpu() {
     let device = Device::gpu(gpu, false);
     a_kept_plate_is_refined(&device);
     what_is_around_a_moving_eye_follows(&device);
+    what_moves_is_where_it_would_be_alone(&device);
 }
 
 /// Pixels for a display are those of the frame of the time.

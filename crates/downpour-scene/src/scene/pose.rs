@@ -153,6 +153,41 @@ impl Scene {
         pose
     }
 
+    /// For each node, whether what it shows may move while some animations run and some nodes are [placed](Placed): it, a node above it or a
+    /// joint of its skin is among those that they move. Numbers without an animation or a node have no effect.
+    ///
+    /// ```
+    /// use downpour_scene::scene::{Node, Scene};
+    /// let node = |children: &[usize]| Node { children: children.to_vec(), ..Node::default() };
+    /// let scene = Scene { nodes: vec![node(&[1]), node(&[]), node(&[])], roots: vec![0, 2], ..Scene::default() };
+    /// assert_eq!(scene.moving_nodes(&[], &[0]), [true, true, false]);
+    /// ```
+    #[must_use]
+    pub fn moving_nodes(&self, animations: &[usize], placed: &[usize]) -> Vec<bool> {
+        let of = animations.iter().filter_map(|&animation| self.animations.get(animation));
+        let mut open: Vec<usize> = of.flat_map(|of| &of.channels).map(|channel| channel.node).collect();
+        open.extend(placed);
+        let mut moves = vec![false; self.nodes.len()];
+        while let Some(node) = open.pop() {
+            if let Some(moves) = moves.get_mut(node).filter(|moves| !**moves) {
+                *moves = true;
+                open.extend(&self.nodes[node].children);
+            }
+        }
+        let joints = |skin: usize| self.skins.get(skin).map_or(&[][..], |skin| &skin.joints);
+        let bent: Vec<usize> = (0..self.nodes.len())
+            .filter(|&node| {
+                self.nodes[node].skin.is_some_and(|skin| {
+                    joints(skin).iter().any(|&joint| moves.get(joint).is_some_and(|&moves| moves))
+                })
+            })
+            .collect();
+        for node in bent {
+            moves[node] = true;
+        }
+        moves
+    }
+
     /// Nodes below the roots, in the order of the walk.
     pub(crate) fn drawn(&self) -> Vec<usize> {
         let locals: Vec<DAffine3> = self.nodes.iter().map(|node| node.local.matrix()).collect();

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use downpour_bvh::BvhTriangle;
 use downpour_render::light::{LightSource, light_weight};
 use glam::Vec3;
 
@@ -31,18 +32,18 @@ fn lamp(light: &LightSource) -> Option<Lamp> {
 
 /// For each of some triangles that shine, the lamp whose glass it is: the nearest within reach.
 pub(super) fn owners(
-    triangles: &[[[f32; 3]; 3]],
-    shining: &[usize],
+    triangles: &[BvhTriangle],
+    shining: &[u32],
     lights: &[LightSource],
-) -> BTreeMap<usize, usize> {
+) -> BTreeMap<u32, usize> {
     // Sorted, so that a scene of many lamps and many lit windows takes no time.
     let mut lamps: Vec<(f32, usize, Vec3)> = (0..)
         .zip(lights)
         .filter_map(|(index, light)| lamp(light).map(|lamp| (lamp.position.x, index, lamp.position)))
         .collect();
     lamps.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let owner = |&triangle: &usize| {
-        let [a, b, c] = triangles[triangle].map(Vec3::from);
+    let owner = |&triangle: &u32| {
+        let [a, b, c] = triangles[triangle as usize].corners().map(Vec3::from);
         if 0.5 * (b - a).cross(c - a).length() > MAX_GLASS_M2 {
             return None;
         }

@@ -222,3 +222,58 @@ fn wetness_is_that_of_the_time() {
     weather.wetness.is_enabled = false;
     assert_eq!(FrameScene::new(&weather, &all, 60.0).expect("a scene of a frame").data.wetness, 0);
 }
+
+/// Frames of a scene in which something moves have what stands still in the same places of their buffers, and all else is what it is in a
+/// frame alone.
+#[test]
+fn what_stands_still_is_the_same_in_all_frames() {
+    use downpour_scene::scene::{Animation, Channel, Interpolation, Parts, Property, Track};
+
+    // A lamp with glass beside it, a wall, and a thing that goes by with a child.
+    let mut all = scene(vec![node(Some(0), Vec3::ZERO), node(Some(1), Vec3::X), node(Some(2), Vec3::Z)]);
+    all.meshes = (0..3)
+        .map(|k| Mesh { primitives: vec![Primitive { material: k, ..triangles(9) }], ..Mesh::default() })
+        .collect();
+    all.materials = vec![
+        Material::default(),
+        Material { emissive: Vec3::splat(9.0), ..Material::default() },
+        Material::default(),
+    ];
+    let moving = Node { local: Local::Parts(Parts::default()), children: vec![2], ..Node::default() };
+    all.nodes.push(moving);
+    all.roots = vec![0, 1, 3];
+    let values = vec![0.0, 0.0, 0.0, 4.0, 0.0, 0.0];
+    let track = Track {
+        times: vec![0.0, 2.0],
+        values,
+        width: 3,
+        interpolation: Interpolation::Linear,
+        ..Track::default()
+    };
+    all.animations = vec![Animation {
+        name: String::new(),
+        channels: vec![Channel { node: 3, property: Property::Translation, track }],
+    }];
+    assert_eq!(all.moving_nodes(&[0], &[]), [false, false, true, true]);
+    let mut all = loaded(all);
+    all.animations = vec![Some(0)];
+    let weather = Weather::default();
+    let first = FrameScene::new(&weather, &all, 0.0).expect("a scene");
+    let later = first.moved(&weather, &all, 1.0).expect("a scene");
+    let alone = FrameScene::new(&weather, &all, 1.0).expect("a scene");
+    assert_eq!((later.triangles, later.data.triangles.len()), (27, 27));
+    assert!(later.data.nodes == alone.data.nodes && later.data.triangles == alone.data.triangles);
+    assert!(later.data.corners == alone.data.corners && later.data.table == alone.data.table);
+    assert!(later.data.texels == alone.data.texels && later.data.emitters == alone.data.emitters);
+    let still = later.data.still_ranges(&first.data).expect("one scene");
+    assert_eq!((still.triangles.clone(), still.corners.clone()), (0..18, 0..54));
+    assert!(later.data.nodes[still.nodes.clone()] == first.data.nodes[still.nodes]);
+    assert!(later.data.triangles[still.triangles.clone()] == first.data.triangles[still.triangles]);
+    assert!(later.data.triangles[18..] != first.data.triangles[18..]);
+    assert!(later.data.texels[still.texels.clone()] == first.data.texels[still.texels]);
+    // Another scene shares nothing, and what stands still has no such parts.
+    assert_eq!(alone.data.still_ranges(&first.data), None);
+    all.animations.clear();
+    let resting = FrameScene::new(&weather, &all, 0.0).expect("a scene");
+    assert_eq!(resting.data.still_ranges(&resting.data), None);
+}

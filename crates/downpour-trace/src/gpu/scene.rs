@@ -438,21 +438,27 @@ impl SceneOnGpu {
         before: Option<&Self>,
         table: wgpu::Buffer,
     ) -> Result<Self, GpuError> {
+        let still = before.and_then(|before| scene.still_ranges(&before.of)).unwrap_or_default();
         macro_rules! buffer {
-            ($field:ident, $label:literal) => {
-                match before.filter(|before| Arc::ptr_eq(&before.of.$field, &scene.$field)) {
-                    Some(before) => before.$field.clone(),
-                    None => on_device(buffers, $label, &scene.$field)?,
+            ($field:ident, $label:literal, $still:expr) => {
+                match before {
+                    Some(before) if Arc::ptr_eq(&before.of.$field, &scene.$field) => before.$field.clone(),
+                    // What moves is written over what it was.
+                    Some(before) if !$still.is_empty() && before.of.$field.len() == scene.$field.len() => {
+                        write_around(buffers, &before.$field, &scene.$field, $still);
+                        before.$field.clone()
+                    }
+                    _ => on_device(buffers, $label, &scene.$field)?,
                 }
             };
         }
         Ok(Self {
-            nodes: buffer!(nodes, "scene nodes"),
-            triangles: buffer!(triangles, "scene triangles"),
-            corners: buffer!(corners, "scene corners"),
+            nodes: buffer!(nodes, "scene nodes", still.nodes),
+            triangles: buffer!(triangles, "scene triangles", still.triangles),
+            corners: buffer!(corners, "scene corners", still.corners),
             table,
-            texels: buffer!(texels, "scene texels"),
-            sky: buffer!(sky, "scene sky"),
+            texels: buffer!(texels, "scene texels", still.texels),
+            sky: buffer!(sky, "scene sky", 0..0),
             of: scene.clone(),
         })
     }
@@ -515,6 +521,19 @@ fn on_device<T: bytemuck::Pod>(
     let buffer = buffers.gpu().empty_buffer(label, bytes.len() as u64, wgpu::BufferUsages::STORAGE)?;
     buffers.write(&buffer, bytes);
     Ok(buffer)
+}
+
+/// Writes the elements of a buffer but those in `still`, which are there.
+fn write_around<T: bytemuck::Pod>(
+    buffers: &impl BufferSource,
+    buffer: &wgpu::Buffer,
+    data: &[T],
+    still: Range<usize>,
+) {
+    for range in [0..still.start, still.end..data.len()] {
+        let offset = (range.start * size_of::<T>()) as u64;
+        buffers.write_at(buffer, offset, bytemuck::cast_slice(&data[range]));
+    }
 }
 
 /// Bytes of the table of a scene with room for the ripples of a lattice on the device.

@@ -29,8 +29,10 @@ impl Renderer {
         let (mut loaded, reloaded) = self.loaded.reload(before, &weather, files, &mut Budget::default())?;
         let atlas = atlas_of(&weather, self.atlas.clone())?;
         let options = RendererOptions { atlas, ..self.options.clone() };
-        let first = if reloaded.models || loaded.is_animated() {
+        let first = if reloaded.models {
             FrameScene::new(&weather, &loaded, options.first_s)?
+        } else if loaded.is_animated() {
+            self.first.moved(&weather, &loaded, options.first_s)?
         } else {
             self.first.in_weather(before, &weather, &loaded, reloaded, options.first_s)?
         };
