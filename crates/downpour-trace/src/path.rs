@@ -29,8 +29,8 @@ use downpour_render::light::light_weight;
 use downpour_shaders::bvh::BVH_FAR;
 use downpour_shaders::render::path::{
     PATH_BETWEEN, PATH_BOUNCES, PATH_CANDIDATES, PATH_CURVED, PATH_CURVED_FRACTION, PATH_CURVED_PART,
-    PATH_LATER_FRACTION, PATH_MIRROR_LAMPS, PATH_OCCLUSION, PATH_OPEN, PATH_OTHER, PATH_PLAIN_GLOSS,
-    PATH_SAME_FACET, PATH_SAME_PLANE, PATH_SECONDARY_ROUGHNESS, PATH_SHINES,
+    PATH_LATER_FRACTION, PATH_MIN_FACTOR, PATH_MIRROR_LAMPS, PATH_OCCLUSION, PATH_OPEN, PATH_OTHER,
+    PATH_PLAIN_GLOSS, PATH_SAME_FACET, PATH_SAME_PLANE, PATH_SECONDARY_ROUGHNESS, PATH_SHINES,
 };
 use downpour_shaders::render::puddle_water::{
     PUDDLE_WATER_DOWN, PUDDLE_WATER_INDEX, PUDDLE_WATER_MATERIAL, PUDDLE_WATER_RAYS, PUDDLE_WATER_RIPPLED,
@@ -192,6 +192,8 @@ struct PathMeeting {
     direct: Vec3,
     /// Light of surfaces that shine, and of lamps with soft shadows, on its diffuse base, over pi.
     glow: Vec3,
+    /// Light of the latter that its gloss shows.
+    sheen: Vec3,
     /// Part of that light that the relief of the surface leaves.
     relief: f32,
     /// True if a lamp is hidden in part.
@@ -337,6 +339,7 @@ impl SceneView<'_> {
             let told = path.base.slack == 0.0 && path_cover(&found) == 1.0 && found.transmission == 0.0;
             let unlit = found.flags & SCENE_UNLIT != 0;
             let (mut direct, mut glow, mut is_soft, mut relief) = (found.diffuse, Vec3::ZERO, false, 1.0);
+            let mut sheen = Vec3::ZERO;
             if !unlit {
                 let is_lamp = found.flags & SCENE_LAMP_GLASS != 0;
                 // Drops are lit by lamps on their own.
@@ -354,6 +357,7 @@ impl SceneView<'_> {
                 direct = if left_out { Vec3::ZERO } else { found.emission } + lamplight.lit;
                 // What is told apart goes with the rest of the light on the diffuse base, which has the material's occlusion.
                 (glow, is_soft) = (lamplight.glow / found.occlusion.max(PATH_OCCLUSION), lamplight.is_soft);
+                sheen = lamplight.sheen;
                 let rest = light_weight(data.sky_irradiance(found.normal)).max(1.0e-9);
                 relief = (rest + lamplight.relief_light) / (rest + lamplight.flat_light);
             }
@@ -382,7 +386,8 @@ impl SceneView<'_> {
             let from_eye = found.position - origin;
             let slack = from_eye.dot(from_eye).sqrt() * (cone * 2.0 + SKYLIGHT_SLACK);
             let ripple = if met.is_some() { water.map(|water| water.ripple) } else { None };
-            let meeting = PathMeeting { surface: found, direct, glow, relief, is_soft, plan, told, slack };
+            let meeting =
+                PathMeeting { surface: found, direct, glow, sheen, relief, is_soft, plan, told, slack };
             let light = self.path_light(&meeting, towards, cone, random, ripple, under);
             if let (Some(_), Some(water)) = (met, &mut water) {
                 let fraction = path_water_fraction(water.ripple, -towards);
@@ -633,7 +638,7 @@ impl SceneView<'_> {
         layer: u32,
         throughput: Vec3,
     ) {
-        let PathMeeting { surface, direct, glow, relief, is_soft, mut plan, told, slack } = *meeting;
+        let PathMeeting { surface, direct, glow, sheen, relief, is_soft, mut plan, told, slack } = *meeting;
         let cover = path_cover(&surface);
         path.radiance += throughput * direct * cover;
         if surface.flags & SCENE_UNLIT != 0 {
@@ -662,6 +667,14 @@ impl SceneView<'_> {
             base -= glow * plan.gloss / (plan.body + plan.gloss).max(Vec3::splat(1.0e-9));
             plan.body += plan.gloss;
             plan.gloss = Vec3::ZERO;
+        }
+        let is_faint = path_max(plan.gloss) <= 0.0;
+        if plan.kept && plan.gloss.min_element() > PATH_MIN_FACTOR {
+            mirror += sheen / plan.gloss;
+        } else if told && is_faint && plan.body.min_element() * relief > PATH_MIN_FACTOR {
+            base += sheen / (plan.body * relief);
+        } else {
+            path.radiance += throughput * sheen * cover;
         }
         let of_base = throughput * plan.body * (cover * relief);
         let of_gloss = throughput * plan.gloss * cover;
@@ -713,7 +726,7 @@ impl ViewPath {
     ) {
         let surface = &meeting.surface;
         let all = meeting.plan.mirrors.max(1) as f32;
-        self.radiance += throughput * meeting.direct;
+        self.radiance += throughput * (meeting.direct + meeting.sheen);
         if meeting.plan.kept {
             self.mirror = PathSlot {
                 light: light.mirror / (all * fraction).max(1.0e-6),

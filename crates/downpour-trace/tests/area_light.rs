@@ -211,6 +211,61 @@ fn a_shadow_is_as_soft_as_its_lamp_is_large() -> Outcome {
     Ok(())
 }
 
+/// What a rough gloss shows of a lamp has a shadow as soft, without the noise of the places of the lamp that each pixel asks.
+#[test]
+fn the_sheen_of_a_lamp_has_its_soft_shadow_without_noise() -> Outcome {
+    let radius = 0.2f32;
+    for (metallic, roughness) in [(1.0, 0.4), (0.0, 0.4), (0.0, 0.8)] {
+        let scene = |shadow: bool| {
+            let mut builder = SceneBuilder::new();
+            let look = MaterialLook {
+                base_color: if metallic > 0.0 { [1.0; 4] } else { [0.02, 0.02, 0.02, 1.0] },
+                metallic,
+                roughness,
+                ..MaterialLook::default()
+            };
+            let floor = builder.add_material(look);
+            let board = builder.add_material(matte(0.0, 0.0));
+            rectangle(&mut builder, floor, Vec3::ZERO, [Vec3::Z * 20.0, Vec3::X * 20.0], 1);
+            if shadow {
+                rectangle(&mut builder, board, Vec3::new(-5.0, 1.0, 0.0), [Vec3::Z * 5.0, Vec3::X * 5.0], 1);
+            }
+            let position = Vec3::new(0.0, 3.0, 0.0);
+            builder.add_light(LightSource::Point {
+                position,
+                radius,
+                intensity: Vec3::splat(45.0),
+                range: 0.0,
+            });
+            builder.build(&SkyLight::uniform([0.0; 3]))
+        };
+        let half = f64::from(radius) * 1.0 / 2.0;
+        for (place, part) in [(-0.6, 0.142_4), (0.0, 0.5), (0.6, 0.857_6)] {
+            let shown = |scene: &SceneData| -> Result<Vec<f64>, Box<dyn std::error::Error>> {
+                let view = Viewpoint {
+                    eye: Vec3::new((place * half) as f32, 0.5, -0.8),
+                    forward: Vec3::new(0.0, -0.5, 0.8),
+                    up: Vec3::Y,
+                    fov_y: 0.002 * radius,
+                };
+                let frame = RenderFrame::new(scene, &view, [24, 24], 1, 1, 7)?;
+                let picture = SceneView { data: scene, frame: &frame }.picture();
+                Ok(picture.iter().map(|pixel| f64::from(pixel[1])).collect())
+            };
+            let (found, lit) = (shown(&scene(true))?, mean(&shown(&scene(false))?));
+            let seen = mean(&found) / lit;
+            assert!((seen - part).abs() < 0.05, "{metallic} {roughness} {place}: {seen}, {part}");
+            let noise = (found.iter().map(|one| (one / lit - seen) * (one / lit - seen)).sum::<f64>()
+                / found.len() as f64)
+                .sqrt();
+            // One place alone is seen or not: the root of part times 1 - part.
+            let alone = (part * (1.0 - part)).sqrt();
+            assert!(noise < 0.35 * alone, "{metallic} {roughness} {place}: {noise} of {alone}");
+        }
+    }
+    Ok(())
+}
+
 /// The same of the sun, by the angle of its disk.
 #[test]
 fn a_shadow_is_as_soft_as_the_sun_is_large() -> Outcome {

@@ -48,6 +48,8 @@ shared_constants! {
         PATH_MIXED: f32 = 0.35;
         /// Specular weight from which rays are traced for it.
         PATH_MIN_GLOSS: f32 = 0.005;
+        /// Smallest factor by which light toward the viewer is divided, to be told apart.
+        PATH_MIN_FACTOR: f32 = 0.001;
         /// Gloss and roughness from which, and below which, each sample of a pixel sees for itself what is mirrored.
         PATH_PLAIN_GLOSS: f32 = 0.03;
         /// See [`PATH_PLAIN_GLOSS`].

@@ -128,6 +128,10 @@ shared_constants! {
         SCENE_SAME_SHADOW: f32 = 0.01;
         /// Roughness below which a gloss shows the glass of a lamp; from it on, the lamp's lobe.
         SCENE_SEEN_BODY: f32 = 0.2;
+        /// Roughness from which means over neighbors are taken of what a gloss shows of lamps whose shadows are wide.
+        SCENE_SHEEN: f32 = 0.35;
+        /// Variance of slopes within a pixel from which they are not: neighbors of it may shine where it does not.
+        SCENE_SHEEN_VARIANCE: f32 = 0.01;
         /// Words of a node of the tree of surfaces that shine.
         EMITTER_WORDS: u32 = 8;
         /// Nodes from the tree's root to a triangle, at most.

@@ -83,6 +83,8 @@ struct PathMeeting {
     direct: vec3f,
     // Light of surfaces that shine, and of lamps with soft shadows, on its diffuse base, over pi.
     glow: vec3f,
+    // Light of the latter that its gloss shows.
+    sheen: vec3f,
     // Part of that light that the relief of the surface leaves.
     relief: f32,
     // True if a lamp is hidden in part.
@@ -406,7 +408,7 @@ fn path_show_water(
     var shown = path;
     let surface = meeting.surface;
     let all = f32(max(meeting.plan.mirrors, 1u));
-    shown.radiance += throughput * meeting.direct;
+    shown.radiance += throughput * (meeting.direct + meeting.sheen);
     if meeting.plan.kept {
         shown.mirror = PathSlot(
             light.mirror / max(all * fraction, 1.0e-6), meeting.slack, throughput * fraction, surface.roughness,
@@ -453,6 +455,15 @@ fn path_show(
         base -= meeting.glow * plan.gloss / max(plan.body + plan.gloss, vec3f(1.0e-9));
         plan.body += plan.gloss;
         plan.gloss = vec3f(0.0);
+    }
+    let gloss = min(plan.gloss.x, min(plan.gloss.y, plan.gloss.z));
+    let body = min(plan.body.x, min(plan.body.y, plan.body.z)) * meeting.relief;
+    if plan.kept && gloss > PATH_MIN_FACTOR {
+        mirror += meeting.sheen / plan.gloss;
+    } else if meeting.told && path_max(plan.gloss) <= 0.0 && body > PATH_MIN_FACTOR {
+        base += meeting.sheen / (plan.body * meeting.relief);
+    } else {
+        shown.radiance += throughput * meeting.sheen * cover;
     }
     let of_base = throughput * plan.body * (cover * meeting.relief);
     let of_gloss = throughput * plan.gloss * cover;
@@ -685,6 +696,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     if turn == 0u {
                         // What is told apart goes with the rest of the light on the diffuse base, which has the material's occlusion.
                         meeting.glow = lamplight.glow / max(found.occlusion, PATH_OCCLUSION);
+                        meeting.sheen = lamplight.sheen;
                         meeting.is_soft = lamplight.is_soft;
                         let rest = max(light_weight(sky_irradiance(found.normal)), 1.0e-9);
                         meeting.relief = (rest + lamplight.relief_light) / (rest + lamplight.flat_light);

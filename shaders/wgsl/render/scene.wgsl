@@ -32,6 +32,8 @@ struct SceneDirect {
     lit: vec3f,
     // On the diffuse base, over pi: of surfaces that shine, and of lamps with soft shadows. Means over neighbors are taken of it.
     glow: vec3f,
+    // Toward the viewer, from a rough gloss that lamps with soft shadows light: means over neighbors are taken of it, too.
+    sheen: vec3f,
     // What lamps of the latter give if nothing hides them: to the facet, and to the surface with its relief.
     flat_light: f32,
     relief_light: f32,
@@ -238,6 +240,7 @@ fn scene_direct(
     }
     let few = draws > 0u && draws < count;
     let glossy = is_first && render_frame.sky_rays > 0u && surface.roughness < SCENE_SEEN_BODY;
+    let is_sheen = surface.roughness >= SCENE_SHEEN && surface.variance < SCENE_SHEEN_VARIANCE;
     // One of few is drawn while they are added up: what is left of a number that has decided is as good as a new one.
     let one = few && draws == 1u;
     var rest = numbers.w;
@@ -379,7 +382,11 @@ fn scene_direct(
         if SCENE_PANE {
             passes *= pane_shadow_fraction(arrival.start, arrival.along, arrival.distance, arrival.spread);
         }
-        result.lit += lit * seen * passes;
+        if is_sheen && soft >= 1.0 {
+            result.sheen += lit * seen * passes;
+        } else {
+            result.lit += lit * seen * passes;
+        }
         result.glow += glow * blurred * passes;
         if one || (few && next >= total) {
             // All are drawn.

@@ -14,7 +14,8 @@ use downpour_shaders::render::scene::{
     SCENE_BLENDED, SCENE_DIGIT, SCENE_FAR, SCENE_LAMP_GLASS, SCENE_LARGE_LAMP, SCENE_LATTICE, SCENE_LAYERS,
     SCENE_LIGHT_AREA, SCENE_LIGHT_BODY, SCENE_MIN_COSINE, SCENE_MIN_LAMP, SCENE_MIN_ROUGHNESS,
     SCENE_OTHER_DIGIT, SCENE_OTHER_LATTICE, SCENE_PICTURE, SCENE_SAME_SHADOW, SCENE_SEEN_BODY,
-    SCENE_SHADOW_M, SCENE_SHADOW_PART, SCENE_SHARP_PIXELS, SCENE_SPOT_GLASS,
+    SCENE_SHADOW_M, SCENE_SHADOW_PART, SCENE_SHARP_PIXELS, SCENE_SHEEN, SCENE_SHEEN_VARIANCE,
+    SCENE_SPOT_GLASS,
 };
 use downpour_shaders::render::translucent::TRANSLUCENT_SIDE;
 use glam::{Vec2, Vec3};
@@ -82,6 +83,8 @@ pub(crate) struct SceneDirect {
     pub(crate) lit: Vec3,
     /// On the diffuse base, over pi: of surfaces that shine, and of lamps with soft shadows. Means over neighbors are taken of it.
     pub(crate) glow: Vec3,
+    /// Toward the viewer, from a rough gloss that lamps with soft shadows light: means over neighbors are taken of it, too.
+    pub(crate) sheen: Vec3,
     /// Light of lamps of the latter if nothing hides them: to the facet, and to the surface with its relief.
     pub(crate) flat_light: f32,
     pub(crate) relief_light: f32,
@@ -259,9 +262,11 @@ impl SceneView<'_> {
         }
         let few = draws > 0 && draws < count;
         let glossy = is_first && self.frame.sky_rays > 0 && surface.roughness < SCENE_SEEN_BODY;
+        let is_sheen = surface.roughness >= SCENE_SHEEN && surface.variance < SCENE_SHEEN_VARIANCE;
         let mut result = SceneDirect {
             lit: Vec3::ZERO,
             glow: Vec3::ZERO,
+            sheen: Vec3::ZERO,
             flat_light: 0.0,
             relief_light: 0.0,
             is_soft: false,
@@ -383,7 +388,11 @@ impl SceneView<'_> {
             let pane =
                 self.pane_shadow_fraction(arrival.start, arrival.along, arrival.distance, arrival.spread);
             let passes = pane * weight;
-            result.lit += lit * seen * passes;
+            if is_sheen && soft >= 1.0 {
+                result.sheen += lit * seen * passes;
+            } else {
+                result.lit += lit * seen * passes;
+            }
             result.glow += glow * blurred * passes;
         }
         result
