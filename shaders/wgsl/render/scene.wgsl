@@ -219,7 +219,7 @@ fn scene_direct(
     surface: Surface, view: vec3f, draws: u32, numbers: vec4f, standoff: f32, under: vec2f, is_first: bool, footprint: f32,
     spared: bool,
 ) -> SceneDirect {
-    var result = SceneDirect(vec3f(0.0), vec3f(0.0), 0.0, 0.0, false);
+    var result = SceneDirect(vec3f(0.0), vec3f(0.0), vec3f(0.0), 0.0, 0.0, false);
     var count = render_frame.light_count;
     var place = RenderLight();
     if SCENE_SHINES && render_frame.emitters > 0u {
