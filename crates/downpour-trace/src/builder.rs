@@ -18,6 +18,7 @@ use crate::sky_light::SkyLight;
 use crate::still_part::StillPart;
 use downpour_render::light::LightSource;
 pub(crate) use part::ScenePart;
+use part::concatenated;
 
 /// Triangle mesh to be added to a scene, in its own space.
 #[derive(Clone, Copy, Debug)]
@@ -246,7 +247,7 @@ impl SceneBuilder {
             match Arc::get_mut(&mut data.texels) {
                 Some(texels) => texels.extend(words),
                 // Textures that other frames share.
-                None => data.texels = Arc::new([&data.texels[..], &words].concat()),
+                None => data.texels = Arc::new(concatenated(&data.texels, &words)),
             }
         }
         data

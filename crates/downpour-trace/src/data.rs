@@ -155,7 +155,7 @@ pub struct SceneData {
     /// The reflection buffer of a frame on the CPU: [`SceneView::mirrored_picture`](crate::scene::SceneView::mirrored_picture).
     pub impostor_picture: Arc<Vec<[u32; 2]>>,
     /// What stands still in a scene that moves; `None` for one that does not.
-    pub(crate) still: Option<Arc<StillPart>>,
+    pub still: Option<Arc<StillPart>>,
     /// Ripples that a device holds: the table shows level water in their place.
     #[cfg(feature = "wgpu")]
     pub ripples: Option<crate::gpu::RipplesOnGpu>,

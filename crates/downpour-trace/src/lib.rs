@@ -68,7 +68,7 @@ mod skylight;
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 pub mod skylight;
-mod still_part;
+pub mod still_part;
 #[cfg(not(feature = "parity"))]
 mod surface;
 #[cfg(feature = "parity")]

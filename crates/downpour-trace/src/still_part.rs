@@ -8,7 +8,7 @@ use crate::data::SceneData;
 
 /// What the buffers of a frame share with those of other frames of a scene that moves.
 #[derive(Clone, Debug)]
-pub(crate) struct StillPart {
+pub struct StillPart {
     /// Triangles that stand still, the first in the buffers of triangles and corners. Their nodes are those behind the root.
     pub(crate) part: Arc<ScenePart>,
     /// Triangles of them that are the glass of lamps, with their materials.

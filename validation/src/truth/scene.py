@@ -34,6 +34,8 @@ def arguments():
         parser.add_argument(f"--{name}", required=True, type=float)
     parser.add_argument("--bsdf", default="gltf")
     parser.add_argument("--keep", type=float, default=0.0)
+    # The first batch's number: of other batches than those of another run, whose mean with it is that of all samples.
+    parser.add_argument("--first-batch", type=int, default=0)
     return parser.parse_args()
 
 
@@ -99,7 +101,8 @@ def render(scene, given):
     path = mi.load_dict({"type": "volpath", "max_depth": DEPTH, "rr_depth": 6})
     pairs = max(BATCHES // 2, -(-int(given.path_samples) // (2 * BATCH_SAMPLES)))
     samples = max(int(given.path_samples) // (2 * pairs), 1)
-    return [np.array(mi.render(scene, integrator=path, spp=samples, seed=seed)) for seed in range(2 * pairs)]
+    seeds = range(given.first_batch, given.first_batch + 2 * pairs)
+    return [np.array(mi.render(scene, integrator=path, spp=samples, seed=seed)) for seed in seeds]
 
 
 def halves_of(given, scene):

@@ -1,6 +1,7 @@
 //! Some of the triangles of a scene with their hierarchy: all of them, or those of what stands still, which is built once.
 
 use downpour_bvh::Bvh;
+use rayon::prelude::*;
 
 use crate::data::RenderCorner;
 use crate::material::MaterialLook;
@@ -46,7 +47,7 @@ impl ScenePart {
         let count = self.bvh.triangles.len() as u32;
         Self {
             bvh: self.bvh.joined(&other.bvh),
-            corners: [&self.corners[..], &other.corners].concat(),
+            corners: concatenated(&self.corners, &other.corners),
             shining: self
                 .shining
                 .iter()
@@ -65,4 +66,9 @@ impl ScenePart {
     pub(crate) fn node_count(&self) -> usize {
         self.bvh.nodes.len()
     }
+}
+
+/// Elements of two arrays, one behind the other: copied on all cores, since most of the work is to get the memory.
+pub(super) fn concatenated<T: Copy + Send + Sync>(first: &[T], second: &[T]) -> Vec<T> {
+    first.par_iter().chain(second).copied().collect()
 }
