@@ -30,7 +30,7 @@ struct Stored<'a> {
 
 /// Materials and textures of a scene: what no pose of it changes, and most of the work.
 #[derive(Clone, Debug)]
-pub struct SceneLooks {
+pub(crate) struct SceneLooks {
     /// They alone.
     builder: SceneBuilder,
     /// Index of each material of the scene, and of one for what has none.
@@ -41,7 +41,7 @@ pub struct SceneLooks {
 impl SceneLooks {
     /// Materials and textures of a scene.
     #[must_use]
-    pub fn new(scene: &Scene) -> Self {
+    pub(crate) fn new(scene: &Scene) -> Self {
         let (mut builder, mut stored) = (SceneBuilder::new(), Stored::default());
         let materials =
             scene.materials.iter().map(|m| builder.add_scene_material(scene, m, &mut stored)).collect();
@@ -51,7 +51,7 @@ impl SceneLooks {
 
     /// Builder of scenes of these materials and textures, which are shared.
     #[must_use]
-    pub fn builder(&self) -> SceneBuilder {
+    pub(crate) fn builder(&self) -> SceneBuilder {
         self.builder.clone()
     }
 

@@ -7,7 +7,7 @@
 use super::REACH;
 use super::light::PlacedLight;
 use super::mesh::{Bounds, Mesh};
-use super::{Local, Parts, PlacedCamera, Property, Scene};
+use super::{Local, Node, Parts, PlacedCamera, Property, Scene};
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3, Quat, Vec3};
 
 /// Minimum ratio of the volume of a matrix to the product of the lengths of its columns. Below it the columns lie in
@@ -169,21 +169,21 @@ impl Scene {
         open.extend(placed);
         let mut moves = vec![false; self.nodes.len()];
         while let Some(node) = open.pop() {
-            if let Some(moves) = moves.get_mut(node).filter(|moves| !**moves) {
+            if let (Some(moves), Some(node)) =
+                (moves.get_mut(node).filter(|moves| !**moves), self.nodes.get(node))
+            {
                 *moves = true;
-                open.extend(&self.nodes[node].children);
+                open.extend(&node.children);
             }
         }
-        let joints = |skin: usize| self.skins.get(skin).map_or(&[][..], |skin| &skin.joints);
-        let bent: Vec<usize> = (0..self.nodes.len())
-            .filter(|&node| {
-                self.nodes[node].skin.is_some_and(|skin| {
-                    joints(skin).iter().any(|&joint| moves.get(joint).is_some_and(|&moves| moves))
-                })
-            })
-            .collect();
-        for node in bent {
-            moves[node] = true;
+        let is_bent = |node: &Node| {
+            let skin = node.skin.and_then(|skin| self.skins.get(skin));
+            let joints = skin.map_or(&[][..], |skin| &skin.joints);
+            joints.iter().any(|&joint| moves.get(joint).is_some_and(|&moves| moves))
+        };
+        let bent: Vec<bool> = self.nodes.iter().map(is_bent).collect();
+        for (moves, is_bent) in moves.iter_mut().zip(bent) {
+            *moves |= is_bent;
         }
         moves
     }
