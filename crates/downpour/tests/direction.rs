@@ -138,7 +138,14 @@ fn models_and_effects_move_by_their_keys() {
         renderer.frame(2.0).unwrap()
     };
     let own = bits(&frame(&mut clip));
-    assert!(own == bits(&frame(&mut renderer(&effects(middle), 0.0))));
+    let other = bits(&frame(&mut renderer(&effects(middle), 0.0)));
+    // Triangles of what may move come last, so that sums over them are in another order.
+    let values =
+        |bits: &[[u32; 3]]| bits.iter().flatten().map(|&bits| f32::from_bits(bits)).collect::<Vec<_>>();
+    let (own, other) = (values(&own), values(&other));
+    assert!(own.len() == other.len() && own.iter().all(|value| value.is_finite()));
+    let apart = own.iter().zip(&other).map(|(a, b)| (a - b).abs() / a.abs().max(1.0)).fold(0.0, f32::max);
+    assert!(apart < 2.0e-3, "{apart}");
 }
 
 /// Values of time 0 would give another picture: crowns of splashes from near and the ripples of a puddle, with keys and with the values of their time.
