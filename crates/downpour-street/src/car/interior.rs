@@ -65,9 +65,10 @@ fn lining(mesh: &mut Mesh, cloth: [f32; 3]) {
         Vec3::new(0.8, FLOOR_M, 0.95),
         !crate::mesh::ABOVE,
     );
-    // The shelf over the boot, and the panel below the hatch.
+    // The shelf over the boot, and the panel below the hatch, which keeps the light of tail lamps out.
     let shelf = tinted(Material::Goods, [0.04; 3]);
     mesh.cuboid(shelf, Vec3::new(-0.66, 0.86, -1.93), Vec3::new(0.66, 0.885, -1.36), 0);
+    mesh.cuboid(shelf, Vec3::new(-0.78, FLOOR_M, -1.95), Vec3::new(0.78, 1.0, -1.92), 0);
 }
 
 /// A cushion with rounded edges: its middle, the half width along x, and half the length and half the thickness along two other directions.
