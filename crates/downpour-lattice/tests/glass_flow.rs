@@ -46,12 +46,12 @@ fn the_first_centimeters_of_a_picture_are_as_wet_as_the_rest() {
     assert!(bands.iter().all(|band| (0.7..1.3).contains(band)), "{bands:?}");
 }
 
-/// The mean of 24 panes scatters by 0.03 to 0.05. Water runs the faster the farther it has come, so that the first band keeps a fifth
+/// The mean of 14 panes scatters by 0.04 to 0.065. Water runs the faster the farther it has come, so that the first band keeps a fifth
 /// more than the mean and the last a tenth less.
 #[test]
-#[ignore = "24 panes take minutes"]
+#[ignore = "14 panes take a minute"]
 fn bands_of_many_panes_hold_about_the_same_water() {
-    let bands = bands(60, 24, 8);
+    let bands = bands(60, 14, 8);
     assert!(bands.iter().all(|band| (0.85..1.2).contains(band)), "{bands:?}");
 }
 
