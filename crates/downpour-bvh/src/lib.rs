@@ -457,13 +457,16 @@ mod tests {
         deepest
     }
 
-    /// Triangles one within another, each larger than the last, make a chain; the walk's stack has room for all of it.
+    /// Triangles one within another, each larger than the last: a tree that is a chain.
+    fn chain() -> Vec<[[f32; 3]; 3]> {
+        let sizes = std::iter::successors(Some(1.0f32), |size| Some(size * 1.08)).take(700);
+        sizes.map(|size| [[-size, 0.0, -size], [size, 0.1 * size, -size], [0.0, -0.1 * size, size]]).collect()
+    }
+
+    /// The walk's stack has room for all of a chain.
     #[test]
     fn a_chain_is_no_deeper_than_the_stack() {
-        let sizes = std::iter::successors(Some(1.0f32), |size| Some(size * 1.08)).take(700);
-        let triangle = |size: f32| [[-size, 0.0, -size], [size, 0.1 * size, -size], [0.0, -0.1 * size, size]];
-        let corners: Vec<[[f32; 3]; 3]> = sizes.map(triangle).collect();
-        let bvh = Bvh::new(&corners);
+        let bvh = Bvh::new(&chain());
         // Each level leaves three children on the stack, and a walk may begin with the root on it.
         assert!(3 * levels(&bvh) < BVH_STACK as usize, "{} levels", levels(&bvh));
         assert!(levels(&bvh) > 10, "{} levels are no chain", levels(&bvh));
@@ -479,10 +482,7 @@ mod tests {
     #[test]
     fn joined_hierarchies_are_met_as_one() {
         let corners = soup(600);
-        let sizes = std::iter::successors(Some(1.0f32), |size| Some(size * 1.08)).take(700);
-        let chain: Vec<[[f32; 3]; 3]> = sizes
-            .map(|size| [[-size, 0.0, -size], [size, 0.1 * size, -size], [0.0, -0.1 * size, size]])
-            .collect();
+        let chain = chain();
         for (first, second) in [
             corners.split_at(450),
             corners.split_at(0),

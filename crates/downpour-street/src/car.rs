@@ -4,12 +4,11 @@
 
 mod interior;
 
-use downpour_math::ops;
 use glam::{Vec2, Vec3};
 
 use crate::error::StreetError;
 use crate::material::Material;
-use crate::mesh::{BELOW, Mesh, plain, tinted};
+use crate::mesh::{BELOW, Mesh, circle, plain, tinted};
 use crate::model::{Lamp, Piece, Placement};
 use crate::noise::{hash, mix, smooth};
 
@@ -314,18 +313,6 @@ fn mirror(mesh: &mut Mesh, center: Vec3) {
     mesh.add(&one, [0.0; 3], 0.0);
 }
 
-/// A bright disc of a headlamp that looks ahead.
-fn reflector(mesh: &mut Mesh, center: Vec3) {
-    const SIDES: usize = 8;
-    let corners: Vec<Vec3> = (0..SIDES)
-        .map(|k| {
-            let angle = k as f32 / SIDES as f32 * std::f32::consts::TAU;
-            center + Vec3::new(ops::cos(angle), ops::sin(angle), 0.0) * 0.038
-        })
-        .collect();
-    mesh.polygon(plain(Material::Alloy), &corners);
-}
-
 /// Strokes of characters as on a plate, by seven segments: from x, y to x, y, in units of half a width and half a height.
 const STROKES: [[f32; 4]; 7] = [
     [-1.0, 1.0, 1.0, 1.0],
@@ -387,7 +374,8 @@ fn fittings(mesh: &mut Mesh, number: u32, has_wheels: bool) {
         cluster(Material::Headlight, [0.465, 0.565], [0.30, 0.57], NOSE_M);
         // Reflectors behind the glass of the headlamps.
         for at in [0.375, 0.495] {
-            reflector(mesh, Vec3::new(x * at, 0.515, NOSE_M + 0.0135));
+            let center = Vec3::new(x * at, 0.515, NOSE_M + 0.0135);
+            mesh.polygon(plain(Material::Alloy), &circle(center, 0.038, 8));
         }
         // Mirrors.
         mirror(mesh, Vec3::new(x * 0.935, 0.995, 0.64));

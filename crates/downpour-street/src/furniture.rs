@@ -4,7 +4,7 @@ use downpour_math::ops;
 use glam::Vec3;
 
 use crate::material::Material;
-use crate::mesh::{BEHIND, Mesh, plain, tinted};
+use crate::mesh::{BEHIND, Mesh, circle, plain, tinted};
 use crate::model::Lamp;
 use crate::noise::{hash, mix};
 use crate::settings::LampEra;
@@ -237,14 +237,7 @@ pub(crate) fn sign_post() -> Mesh {
     let mut mesh = Mesh::default();
     let zinc = plain(Material::Zinc);
     mesh.tube(zinc, &[(Vec3::ZERO, 0.030), (Vec3::new(0.0, 2.75, 0.0), 0.030)], 9);
-    let plate = |radius: f32, z: f32| -> Vec<Vec3> {
-        (0..24)
-            .map(|k| {
-                let angle = k as f32 / 24.0 * std::f32::consts::TAU;
-                Vec3::new(radius * ops::cos(angle), 2.42 + radius * ops::sin(angle), z)
-            })
-            .collect()
-    };
+    let plate = |radius: f32, z: f32| circle(Vec3::new(0.0, 2.42, z), radius, 24);
     mesh.polygon(tinted(Material::Joinery, [0.36, 0.014, 0.014]), &plate(0.30, 0.040));
     mesh.polygon(tinted(Material::Joinery, [0.012, 0.035, 0.20]), &plate(0.235, 0.042));
     let mut back = plate(0.30, 0.036);

@@ -61,6 +61,15 @@ pub(crate) const ABOVE: u8 = 8;
 pub(crate) const BEHIND: u8 = 16;
 pub(crate) const FRONT: u8 = 32;
 
+/// Corners of a circle around a point that looks along +z, counter-clockwise.
+pub(crate) fn circle(center: Vec3, radius: f32, sides: usize) -> Vec<Vec3> {
+    let corner = |k: usize| {
+        let angle = k as f32 / sides as f32 * std::f32::consts::TAU;
+        Vec3::new(center.x + radius * ops::cos(angle), center.y + radius * ops::sin(angle), center.z)
+    };
+    (0..sides).map(corner).collect()
+}
+
 /// Edges of a turned or drawn-out shape sharper than this stay sharp: cosine of 40 degrees.
 const CREASE: f32 = 0.766;
 

@@ -145,7 +145,10 @@ impl SceneBuilder {
 
     /// Takes the triangles that are there so far as a part of scenes of these materials.
     pub(crate) fn take_part(&mut self) -> ScenePart {
-        self.have_a_material();
+        // A scene has one material at least.
+        if self.materials.is_empty() {
+            self.materials.push(MaterialLook::default());
+        }
         let (positions, corners) = (std::mem::take(&mut self.positions), std::mem::take(&mut self.corners));
         ScenePart::new(&positions, &corners, &self.materials)
     }
@@ -155,17 +158,9 @@ impl SceneBuilder {
         self.still = Some(still);
     }
 
-    /// A scene has one material at least.
-    fn have_a_material(&mut self) {
-        if self.materials.is_empty() {
-            self.materials.push(MaterialLook::default());
-        }
-    }
-
     /// Builds the hierarchy and the buffers.
     #[must_use]
     pub fn build(mut self, sky: &SkyLight) -> SceneData {
-        self.have_a_material();
         if self.triangle_count() == 0 {
             // A triangle far below and too small to be seen: a hierarchy has at least one.
             self.positions.push([[0.0, -1.0e6, 0.0], [1.0e-3, -1.0e6, 0.0], [0.0, -1.0e6, 1.0e-3]]);

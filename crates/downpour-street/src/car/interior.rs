@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 
 use super::{GLASS_FROM, GLASS_TO, PILLARS_M, section};
 use crate::material::Material;
-use crate::mesh::{Mesh, Paint, plain, tinted};
+use crate::mesh::{ABOVE, Mesh, Paint, plain, tinted};
 use crate::noise::hash;
 
 /// Stations of the lining, from the hatch to the windscreen; between some of them are pillars.
@@ -59,12 +59,7 @@ fn lining(mesh: &mut Mesh, cloth: [f32; 3]) {
         });
     }
     let carpet = tinted(Material::Goods, [0.025; 3]);
-    mesh.cuboid(
-        carpet,
-        Vec3::new(-0.8, FLOOR_M - 0.02, -1.9),
-        Vec3::new(0.8, FLOOR_M, 0.95),
-        !crate::mesh::ABOVE,
-    );
+    mesh.cuboid(carpet, Vec3::new(-0.8, FLOOR_M - 0.02, -1.9), Vec3::new(0.8, FLOOR_M, 0.95), !ABOVE);
     // The shelf over the boot, and the panel below the hatch, which keeps the light of tail lamps out.
     let shelf = tinted(Material::Goods, [0.04; 3]);
     mesh.cuboid(shelf, Vec3::new(-0.66, 0.86, -1.93), Vec3::new(0.66, 0.885, -1.36), 0);

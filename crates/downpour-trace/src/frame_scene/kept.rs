@@ -29,7 +29,7 @@ impl KeptScene {
         let looks =
             known.map_or_else(|| Arc::new(SceneLooks::new(&loaded.scene)), |known| known.looks.clone());
         let moves = known.map_or_else(|| Arc::new(loaded.moving_nodes()), |known| known.moves.clone());
-        let still = Arc::new(looks.part(&loaded.scene, pose, origin, |node| !is_moved(&moves, node)));
+        let still = Arc::new(looks.part(&loaded.scene, pose, origin, |node| moves.get(node) != Some(&true)));
         Self { looks, still, moves, origin }
     }
 
@@ -37,11 +37,9 @@ impl KeptScene {
     pub(super) fn builder(&self, loaded: &Loaded, pose: &Pose) -> SceneBuilder {
         let mut builder = self.looks.builder();
         builder.set_still(self.still.clone());
-        builder.add_meshes(&self.looks, &loaded.scene, pose, self.origin, |node| is_moved(&self.moves, node));
+        builder.add_meshes(&self.looks, &loaded.scene, pose, self.origin, |node| {
+            self.moves.get(node) == Some(&true)
+        });
         builder
     }
-}
-
-fn is_moved(moves: &[bool], node: usize) -> bool {
-    moves.get(node).is_some_and(|&moves| moves)
 }
