@@ -138,6 +138,11 @@ fn models_and_effects_move_by_their_keys() {
         renderer.frame(2.0).unwrap()
     };
     let own = bits(&frame(&mut clip));
+    // Keys that say the same all the time are those of that moment, to the bit.
+    let resting = ["[[0, [0, 0, -6]], [4, [0, 0, -6]]]", "[[0, [0, 90, 0]], [4, [0, 90, 0]]]"];
+    let [_, _, glare, width, fog, brightness] = middle;
+    let resting = [resting[0], resting[1], glare, width, fog, brightness];
+    assert!(own == bits(&frame(&mut renderer(&effects(resting), 0.0))));
     let other = bits(&frame(&mut renderer(&effects(middle), 0.0)));
     // Triangles of what may move come last, so that sums over them are in another order.
     let values =
