@@ -109,7 +109,7 @@ fn hosts() -> Vec<Host> {
         host!(DropsFrame as "DropsFrame" in &render::rain::DROPS_FRAME,
             camera, capture_right, capture_size, capture_up, capture_last,
             capture_forward, capture_texel, form, mask_size, known, light_terms, streak_samples,
-            streak_color, glints, atlas, visibility, made_classes, unused_b, unused_c),
+            streak_color, glints, atlas, visibility, made_classes, count, unused_c),
         host!(LayersLamp as "LayersLamp" in &render::layers::LAYERS, place, is_parallel, color, unused),
         host!(LayersFrame as "LayersFrame" in &render::layers::LAYERS,
             fall, moved, row_part, row, count, strength, parallax, milk, stretch, distortion, unused, lamps),

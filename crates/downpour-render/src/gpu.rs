@@ -1,6 +1,7 @@
 //! Pictures on a GPU: the same rays and the same drops as on the CPU, from the same buffers.
 
 mod drop_light;
+mod drops;
 mod glass;
 mod glow;
 mod host;

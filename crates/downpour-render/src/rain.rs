@@ -25,6 +25,11 @@ mod drops_glint;
 mod drops_mask;
 mod drops_medium;
 mod drops_shade;
+#[cfg(not(feature = "parity"))]
+pub(crate) mod drops_sum;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
+pub mod drops_sum;
 mod environment;
 pub mod exposure;
 #[cfg(not(feature = "parity"))]

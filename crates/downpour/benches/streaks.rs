@@ -262,7 +262,7 @@ fn compared(c: &mut Criterion) {
         dispatches.extend(pass.binning().concat());
         // The layer holds what is not drawn, which is nothing, until the drops are over it.
         dispatches.extend(pass.medium());
-        dispatches.push(pass.drops());
+        dispatches.extend(pass.drops());
         gpu.submit(&plate.dispatches(&pass)).expect("surroundings");
         group.bench_function(BenchmarkId::new("lists of tiles", &name), |b| {
             b.iter_custom(|iterations| {

@@ -206,7 +206,7 @@ impl Bench<'_> {
         let streaks: Vec<Dispatch<'_>> = pass.streaks();
         let table = if streaks.is_empty() { 0.0 } else { time(self.gpu, &streaks)? };
         // The drops go over what is not drawn, which is to be there again each time.
-        let shown = [vec![pass.open_air()], pass.medium(), vec![pass.drops()]].concat();
+        let shown = [vec![pass.open_air()], pass.medium(), pass.drops()].concat();
         let drops = lists + time(self.gpu, &shown)?;
         Ok(Cost { binning, capture, table, lamps, drops, layer: pass.layer()? })
     }

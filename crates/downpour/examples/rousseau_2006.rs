@@ -64,8 +64,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let plate = scenes.plate(&gpu, &scene, &frame, &rains, &rain)?;
             let pass = rains.prepare(&gpu, &plate.of(drawn.picture()), &uploaded, &rain, &lights)?;
             let capture = time(&gpu, &plate.dispatches(&pass))?;
-            let shown =
-                time(&gpu, &[vec![pass.open_air()], pass.binning().concat(), vec![pass.drops()]].concat())?;
+            let shown = time(&gpu, &[vec![pass.open_air()], pass.binning().concat(), pass.drops()].concat())?;
             let rate = 1.0e3 / (capture + shown);
             let on_screen = rain.list.len();
             println!(

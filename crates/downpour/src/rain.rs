@@ -323,7 +323,7 @@ impl Rain {
         let mut stages = vec![[made.dispatches(), pass.environment()].concat()];
         stages.extend(found.stages_beside(pass.open_air()));
         stages.extend(pass.binning());
-        stages.push([pass.lamps(), pass.streaks(), pass.medium(), vec![pass.drops()], pass.spray()].concat());
+        stages.push([pass.lamps(), pass.streaks(), pass.medium(), pass.drops(), pass.spray()].concat());
         for stage in &stages {
             let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: Some("rain"),

@@ -38,6 +38,7 @@ pub const MODULES: &[&Module] = &[
     &DROPS_GLINT,
     &DROPS_MEDIUM,
     &DROPS,
+    &DROPS_SUM,
 ];
 
 /// Every kernel of this file.
@@ -58,7 +59,13 @@ pub const KERNELS: &[&Kernel] = &[
     &TILES_PLACE_KERNEL,
     &TILES_SORT_KERNEL,
     &TILES_SEEN_KERNEL,
+    &DROPS_UNLISTED_KERNEL,
     &DROPS_KERNEL,
+    &DROPS_SUM_CLEAR_KERNEL,
+    &DROPS_SUM_SCALE_KERNEL,
+    &DROPS_SUM_THIN_KERNEL,
+    &DROPS_SUM_WIDE_KERNEL,
+    &DROPS_SUM_FINISH_KERNEL,
 ];
 
 shared_constants! {
@@ -156,6 +163,10 @@ shared_constants! {
         DROPS_DIRECTION: u32 = 0;
         /// Form of refraction: the position in the captured picture is shifted (Rousseau 2006).
         DROPS_SHIFT: u32 = 1;
+        /// No streak that is summed up counts as farther away, m.
+        DROPS_FAR: f32 = 1000.0;
+        /// Workgroups along a row, of blocks in which drops are listed: fewer than every device allows.
+        DROPS_ALONG: u32 = 32768;
         /// Below this transmittance the rest of the drops is not seen.
         DROPS_OPAQUE: f32 = 1.0e-3;
         /// Twice the inverse of water's refractive index: the middle of a sphere bends by 2 - 2 / n per radius.
@@ -242,6 +253,36 @@ shared_constants! {
         STREAK_SPAN_ROOM: f32 = 0.5;
         /// Exposures by which that path is longer at most, at either end.
         STREAK_SPAN_MAX: f32 = 32.0;
+        /// Most that a streak with a profile covers of a pixel that is summed up.
+        STREAK_SUM_COVER: f32 = 0.125;
+        /// Most that one without a profile covers.
+        STREAK_SUM_THIN: f32 = 0.75;
+        /// It reaches no farther from its path, pixels.
+        STREAK_SUM_REACH: f32 = 8.0;
+        /// Invocations that share the path of a streak without a profile.
+        DROPS_SUM_SHARED: u32 = 16;
+        /// Invocations that share the path of one with a profile.
+        DROPS_SUM_WIDE: u32 = 256;
+        /// Drops of the list among which a workgroup looks for these.
+        DROPS_SUM_LOOKED: u32 = 32;
+        /// Coverages and optical depths below this are turned into each other by a series.
+        DROPS_SUM_FEW: f32 = 0.1;
+        /// Units of the scale: 2^32.
+        DROPS_SUM_UNITS: f32 = 4294967296.0;
+        /// From so many units on light is summed in large ones.
+        DROPS_SUM_SMALL: f32 = 524288.0;
+        /// A large unit.
+        DROPS_SUM_LARGE: f32 = 4096.0;
+        /// The most of these that a streak adds to a pixel.
+        DROPS_SUM_MAX: f32 = 1073741824.0;
+        /// Units of an optical depth of 1: 2^20.
+        DROPS_SUM_DEPTHS: f32 = 1048576.0;
+        /// Units of an optical depth of 1 at 1 m: 2^14.
+        DROPS_SUM_WAYS: f32 = 16384.0;
+        /// Bits of the least scale, 2^-60.
+        DROPS_SUM_FAINTEST: u32 = 0x21800000;
+        /// Bits of the largest scale, 2^60.
+        DROPS_SUM_BRIGHTEST: u32 = 0x5d800000;
         /// Step of the lattice of a pixel's samples.
         STREAK_LATTICE: u32 = 3;
         /// Shift of these samples from line to line: the golden ratio's part of 2^16.
@@ -485,6 +526,22 @@ pub static TILES: Module = Module {
     uses: &[&INVOCATION, &RAIN_CONSTANTS, &OSCILLATION, &STREAK],
 };
 
+/// Streaks that are summed up. Twin: `downpour_render::rain::drops_sum`.
+pub static DROPS_SUM: Module = Module {
+    path: "render/drops_sum.wgsl",
+    wgsl: include_str!("../../wgsl/render/drops_sum.wgsl"),
+    uses: &[
+        &INVOCATION,
+        &RAIN_CONSTANTS,
+        &CAMERA,
+        &DROPS_FRAME,
+        &DROPS_CAPTURE,
+        &STREAK,
+        &DROPS_GLINT,
+        &DROPS,
+    ],
+};
+
 /// One invocation per place in the list.
 pub static PROJECT_KERNEL: Kernel = Kernel { entry: "main_project", module: &PROJECT, workgroup: [64, 1, 1] };
 
@@ -548,4 +605,28 @@ pub static STREAK_LIGHT_KERNEL: Kernel =
     Kernel { entry: "main_streak_light", module: &STREAK_LIGHT, workgroup: [64, 1, 1] };
 
 /// One invocation per pixel.
+pub static DROPS_UNLISTED_KERNEL: Kernel =
+    Kernel { entry: "main_drops_unlisted", module: &DROPS, workgroup: [8, 8, 1] };
+
+/// One workgroup per block in which drops are listed.
 pub static DROPS_KERNEL: Kernel = Kernel { entry: "main_drops", module: &DROPS, workgroup: [8, 8, 1] };
+
+/// One invocation per word of the sums.
+pub static DROPS_SUM_CLEAR_KERNEL: Kernel =
+    Kernel { entry: "main_drops_sum_clear", module: &DROPS_SUM, workgroup: [64, 1, 1] };
+
+/// One invocation per drop.
+pub static DROPS_SUM_SCALE_KERNEL: Kernel =
+    Kernel { entry: "main_drops_sum_scale", module: &DROPS_SUM, workgroup: [64, 1, 1] };
+
+/// `DROPS_SUM_SHARED` invocations per drop.
+pub static DROPS_SUM_THIN_KERNEL: Kernel =
+    Kernel { entry: "main_drops_sum_thin", module: &DROPS_SUM, workgroup: [64, 1, 1] };
+
+/// One workgroup per `DROPS_SUM_LOOKED` drops.
+pub static DROPS_SUM_WIDE_KERNEL: Kernel =
+    Kernel { entry: "main_drops_sum_wide", module: &DROPS_SUM, workgroup: [256, 1, 1] };
+
+/// One invocation per pixel.
+pub static DROPS_SUM_FINISH_KERNEL: Kernel =
+    Kernel { entry: "main_drops_sum_finish", module: &DROPS_SUM, workgroup: [64, 1, 1] };

@@ -3,15 +3,24 @@
 // Law: a drop below a pixel, or out of focus, covers the pixels around its path by its area and its fraction of the exposure, so
 // its light does not depend on where it falls; a larger one is sampled in each pixel. What lamps add is the mean over the
 // drop.
+// Streaks that cover little of each pixel are summed up before (drops_sum.wgsl) and count as one drop.
 // Unresolved drops are a medium between them (medium.wgsl): it shows the mean radiance of a drop, and the light of lamps.
 // Twin: downpour_render::rain::drops.
 
 @group(0) @binding(3) var<storage, read> drops_list: array<ScreenDrop>;
-// The lists of the tiles (tiles.wgsl).
+// The lists of the tiles (tiles.wgsl). At its end the number of blocks of 8 by 8 pixels in which drops are listed, and before that, from the
+// last one backward, these blocks.
 @group(0) @binding(4) var<storage, read> drops_tiles: array<u32>;
-@group(0) @binding(5) var<storage, read> drops_clean: array<vec4f>;
+// Of each pixel the distance of the scene, and what streaks show that were summed up (drops_sum.wgsl).
+@group(0) @binding(5) var<storage, read> drops_summed: array<vec4u>;
 // At first the medium (medium_filter.wgsl): light of lamps, and mean distance and optical depth as halves. Then the rain.
 @group(0) @binding(6) var<storage, read_write> drops_layer: array<vec4f>;
+// The lists while these blocks are found, and workgroups for them: along a row, rows, 1, number of blocks.
+@group(0) @binding(13) var<storage, read_write> drops_blocks: array<atomic<u32>>;
+@group(0) @binding(14) var<storage, read_write> drops_groups: array<atomic<u32>>;
+
+// First and end of the list of a workgroup's block.
+var<workgroup> drops_listed: vec2u;
 
 // The position of a ray on the plane at distance 1 through a drop's middle, along the right and up of its view.
 fn drops_on_plane(towards: vec3f, ray: vec3f) -> vec3f {
@@ -179,18 +188,20 @@ fn drops_shift(line: u32) -> f32 {
     return f32((line * STREAK_GOLDEN) & 0xffffu) / 65536.0;
 }
 
-// The streak of a drop over a pixel: radiance times coverage, and coverage.
-fn drops_streak(index: u32, drop: ScreenDrop, x: u32, y: u32) -> vec4f {
-    let size = vec2f(f32(drops_frame.camera.width), f32(drops_frame.camera.height));
-    if drop.grid == 0u {
-        let cover = streak_cover(drop, x, y);
-        if cover <= 0.0 {
-            return vec4f(0.0);
-        }
-        let position = vec2f(f32(x) + 0.5, f32(y) + 0.5) / size;
-        let mean = streak_lookup_mean(drop.shape, position) + drops_beads(index, drop, x, y);
-        return vec4f(mean, 1.0) * cover;
+// The streak of a drop that is not sampled over a pixel: radiance times coverage, and coverage.
+fn drops_thin(index: u32, drop: ScreenDrop, x: u32, y: u32) -> vec4f {
+    let cover = streak_cover(drop, x, y);
+    if cover <= 0.0 {
+        return vec4f(0.0);
     }
+    let size = vec2f(f32(drops_frame.camera.width), f32(drops_frame.camera.height));
+    let position = vec2f(f32(x) + 0.5, f32(y) + 0.5) / size;
+    let mean = streak_lookup_mean(drop.shape, position) + drops_beads(index, drop, x, y);
+    return vec4f(mean, 1.0) * cover;
+}
+
+// The streak of a drop that is sampled over a pixel.
+fn drops_wide(index: u32, drop: ScreenDrop, x: u32, y: u32) -> vec4f {
     let right = drop_glint_right(drop.towards);
     let up = cross(right, drop.towards);
     let shift = vec2f(drops_shift(y), drops_shift(x));
@@ -256,15 +267,9 @@ fn drops_visible(shown: vec4f, visibility: f32) -> vec4f {
     return shown * min(visibility, 1.0 / max(shown.w, 1.0e-6));
 }
 
-// A drop over a pixel whose scene is `scene` meters away: radiance times coverage, and coverage.
-fn drops_pixel(index: u32, x: u32, y: u32, scene: f32) -> vec4f {
-    let drop = drops_list[index];
-    var shown = vec4f(0.0);
-    if drop.kind == DROPS_STILL {
-        shown = drops_still(index, drop, x, y);
-    } else {
-        shown = drops_streak(index, drop, x, y);
-    }
+// What a drop over a pixel shows before a scene that is `scene` meters away.
+fn drops_shown(drop: ScreenDrop, light: vec4f, x: u32, y: u32, scene: f32) -> vec4f {
+    var shown = light;
     if max(max(shown.r, shown.g), max(shown.b, shown.w)) <= 0.0 {
         return vec4f(0.0);
     }
@@ -275,19 +280,78 @@ fn drops_pixel(index: u32, x: u32, y: u32, scene: f32) -> vec4f {
     return drops_visible(seen, drops_frame.visibility);
 }
 
+// A drop over a pixel whose scene is `scene` meters away: radiance times coverage, and coverage.
+fn drops_pixel(index: u32, x: u32, y: u32, scene: f32) -> vec4f {
+    let drop = drops_list[index];
+    var shown = vec4f(0.0);
+    if drop.kind == DROPS_STILL {
+        shown = drops_still(index, drop, x, y);
+    } else if drop.grid == 0u {
+        shown = drops_thin(index, drop, x, y);
+    } else {
+        shown = drops_wide(index, drop, x, y);
+    }
+    return drops_shown(drop, shown, x, y, scene);
+}
+
 // Mean radiance that fog scatters into a ray: the capture about the ray, over the solid angle of an even cone whose mean cosine is
 // the asymmetry of the phase function.
 fn drops_fog(direction: vec3f) -> vec3f {
     return drops_capture_about(direction, direction, medium_frame.fog_phase.x) * medium_frame.fog.w;
 }
 
-// The rain over a pixel: radiance, and the transmittance of the scene behind it. Drops are in order of their nearest
-// points, with the medium and the fog between them.
-fn drops_over(x: u32, y: u32) -> vec4f {
-    let edge = drops_tiles[0];
-    let tile = (y / edge) * ((drops_frame.camera.width + edge - 1u) / edge) + x / edge;
+// What streaks show together that were summed up: radiance times coverage, and coverage.
+fn drops_sums_shown(sums: vec4u) -> vec4f {
+    let green = (sums.y >> 21u) | ((sums.z & 0x3ffu) << 11u);
+    let color = bitcast<vec3f>(vec3u(sums.y & 0x1fffffu, green, sums.z >> 10u) << vec3u(10u));
+    return vec4f(color, f32(sums.w & 0xffffu) / 65535.0);
+}
+
+// How far away they are on the mean, m.
+fn drops_sums_distance(sums: vec4u) -> f32 {
+    return bitcast<f32>(sums.w & 0xffff0000u);
+}
+
+// What is before a pixel besides drops of its list.
+struct DropsAir {
+    // The pixel's ray.
+    direction: vec3f,
+    // The part of it in which drops are drawn (medium_span).
+    span: vec3f,
+    // Distance of the scene, and where the medium ends before it, m.
+    scene: f32,
+    end: f32,
+    // Optical depth of the medium, and its factor.
+    depth: f32,
+    thinned: f32,
+    // What drops of the medium show, and what fog does.
+    medium: vec3f,
+    fog: vec3f,
+    // Light of lamps on the medium, and its mean distance, m.
+    lamps: vec3f,
+    lamps_at: f32,
+    // Streaks that were summed up: radiance times coverage, coverage; and their mean distance, m.
+    streaks: vec4f,
+    streaks_at: f32,
+}
+
+// What is seen of a pixel from the eye to some distance.
+struct DropsSeen {
+    radiance: vec3f,
+    // What drops let through, the medium, and fog.
+    transmittance: f32,
+    left: f32,
+    clear: f32,
+    // True if the light of lamps on the medium is in it, and the streaks that were summed up.
+    has_lamps: bool,
+    has_streaks: bool,
+}
+
+// What is before a pixel besides drops of its list.
+fn drops_air(x: u32, y: u32) -> DropsAir {
     let index = y * drops_frame.camera.width + x;
-    let scene = drops_clean[index].w;
+    let sums = drops_summed[index];
+    let scene = bitcast<f32>(sums.x);
     let mean = drops_layer[index];
     // Mean distance of the medium's light of lamps, and its optical depth.
     let pair = unpack2x16float(bitcast<u32>(mean.w));
@@ -316,51 +380,142 @@ fn drops_over(x: u32, y: u32) -> vec4f {
     if medium_frame.fog.x > 0.0 {
         shown_fog = drops_fog(direction);
     }
-    var radiance = vec3f(0.0);
-    var transmittance = 1.0;
-    var behind = true;
-    // Transmittance of the medium up to here.
-    var left = 1.0;
-    // That of the fog.
-    var clear = 1.0;
-    for (var k = drops_tiles[1u + tile]; k < drops_tiles[2u + tile]; k += 1u) {
+    return DropsAir(
+        direction,
+        span,
+        scene,
+        end,
+        depth,
+        thinned,
+        shown_medium,
+        shown_fog,
+        lamps,
+        pair.x,
+        drops_sums_shown(sums),
+        drops_sums_distance(sums),
+    );
+}
+
+// Goes on to a drop at a distance, with the medium and the fog before it.
+fn drops_behind(before: DropsSeen, air: DropsAir, shown: vec4f, distance: f32) -> DropsSeen {
+    var seen = before;
+    let at = min(distance, air.end);
+    if !seen.has_lamps && at > air.lamps_at {
+        seen.radiance += air.lamps * seen.transmittance;
+        seen.has_lamps = true;
+    }
+    let here = min(exp(-medium_depth(at, air.span, 1.0) * air.thinned), seen.left);
+    let through = medium_fog(air.direction, at);
+    // What a part of the way takes out, left * clear - here * through, is shared by medium and fog.
+    let between = air.medium * ((seen.left - here) * (0.5 * (seen.clear + through)));
+    let fog = air.fog * ((seen.clear - through) * (0.5 * (seen.left + here)));
+    seen.radiance += seen.transmittance * (between + fog + shown.rgb * (here * through));
+    seen.clear = through;
+    seen.transmittance *= 1.0 - shown.w;
+    seen.left = here;
+    return seen;
+}
+
+// Goes on to the streaks that were summed up, if they are nearer than a distance.
+fn drops_behind_streaks(before: DropsSeen, air: DropsAir, distance: f32) -> DropsSeen {
+    let shown = max(max(air.streaks.r, air.streaks.g), max(air.streaks.b, air.streaks.w)) > 0.0;
+    if before.has_streaks || !shown || air.streaks_at >= distance {
+        return before;
+    }
+    var seen = drops_behind(before, air, air.streaks, air.streaks_at);
+    seen.has_streaks = true;
+    return seen;
+}
+
+// The rain over a pixel: radiance, and the transmittance of the scene behind it, by what is seen up to the last drop.
+fn drops_whole(before: DropsSeen, air: DropsAir) -> vec4f {
+    let seen = drops_behind_streaks(before, air, DROPS_FAR);
+    var radiance = seen.radiance;
+    if !seen.has_lamps {
+        radiance += air.lamps * seen.transmittance;
+    }
+    let last = min(exp(-air.depth), seen.left);
+    let whole = medium_fog(air.direction, air.scene);
+    radiance += air.medium * (seen.transmittance * (seen.left - last) * (0.5 * (seen.clear + whole)));
+    radiance += air.fog * (seen.transmittance * (seen.clear - whole) * (0.5 * (seen.left + last)));
+    return vec4f(radiance, seen.transmittance * last * whole);
+}
+
+// The rain over a pixel whose list is between two places. Drops are in order of their nearest points, with the medium and the fog between
+// them.
+fn drops_over(x: u32, y: u32, first: u32, end: u32) -> vec4f {
+    let air = drops_air(x, y);
+    var seen = DropsSeen(vec3f(0.0), 1.0, 1.0, 1.0, false, false);
+    for (var k = first; k < end; k += 1u) {
         let drop = drops_tiles[k];
-        if drops_list[drop].nearest >= scene || transmittance < DROPS_OPAQUE {
+        if drops_list[drop].nearest >= air.scene || seen.transmittance < DROPS_OPAQUE {
             break;
         }
-        let shown = drops_pixel(drop, x, y, scene);
+        let shown = drops_pixel(drop, x, y, air.scene);
         if max(max(shown.r, shown.g), max(shown.b, shown.w)) <= 0.0 {
             continue;
         }
-        let distance = min(drops_list[drop].distance, end);
-        if behind && distance > pair.x {
-            radiance += lamps * transmittance;
-            behind = false;
-        }
-        let here = min(exp(-medium_depth(distance, span, 1.0) * thinned), left);
-        let seen = medium_fog(direction, distance);
-        // What a part of the way takes out, left * clear - here * seen, is shared by medium and fog.
-        let between = shown_medium * ((left - here) * (0.5 * (clear + seen)));
-        let fog = shown_fog * ((clear - seen) * (0.5 * (left + here)));
-        radiance += transmittance * (between + fog + shown.rgb * (here * seen));
-        clear = seen;
-        transmittance *= 1.0 - shown.w;
-        left = here;
+        seen = drops_behind_streaks(seen, air, drops_list[drop].distance);
+        seen = drops_behind(seen, air, shown, drops_list[drop].distance);
     }
-    if behind {
-        radiance += lamps * transmittance;
-    }
-    let last = min(exp(-depth), left);
-    let whole = medium_fog(direction, scene);
-    radiance += shown_medium * (transmittance * (left - last) * (0.5 * (clear + whole)));
-    radiance += shown_fog * (transmittance * (clear - whole) * (0.5 * (left + last)));
-    return vec4f(radiance, transmittance * last * whole);
+    return drops_whole(seen, air);
 }
 
+// The tile of the lists that has a block of 8 by 8 pixels of a picture so wide, where tiles are so wide.
+fn drops_tile(block: vec2u, edge: u32, width: u32) -> u32 {
+    let tile = block * DROPS_TILE / edge;
+    return tile.y * ((width + edge - 1u) / edge) + tile.x;
+}
+
+// The rain where no drops are listed; elsewhere notes the blocks. Apart from those, which take so much more: all that a kernel can do costs
+// those of its pixels that do not.
 @compute @workgroup_size(8, 8, 1)
-fn main_drops(@builtin(global_invocation_id) id: vec3u) {
-    if id.x >= drops_frame.camera.width || id.y >= drops_frame.camera.height {
+fn main_drops_unlisted(
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_index) local: u32,
+) {
+    if local == 0u {
+        let tile = drops_tile(group.xy, atomicLoad(&drops_blocks[0]), drops_frame.camera.width);
+        drops_listed = vec2u(atomicLoad(&drops_blocks[1u + tile]), atomicLoad(&drops_blocks[2u + tile]));
+        if drops_listed.x < drops_listed.y {
+            let place = atomicAdd(&drops_groups[3], 1u);
+            atomicMax(&drops_groups[0], min(place + 1u, DROPS_ALONG));
+            atomicMax(&drops_groups[1], place / DROPS_ALONG + 1u);
+            let last = arrayLength(&drops_blocks) - 1u;
+            atomicMax(&drops_blocks[last], place + 1u);
+            atomicStore(&drops_blocks[last - 1u - place], group.y * groups.x + group.x);
+        }
+    }
+    let listed = workgroupUniformLoad(&drops_listed);
+    if listed.x < listed.y || id.x >= drops_frame.camera.width || id.y >= drops_frame.camera.height {
         return;
     }
-    drops_layer[id.y * drops_frame.camera.width + id.x] = drops_over(id.x, id.y);
+    let nothing = DropsSeen(vec3f(0.0), 1.0, 1.0, 1.0, false, false);
+    drops_layer[id.y * drops_frame.camera.width + id.x] = drops_whole(nothing, drops_air(id.x, id.y));
+}
+
+// The rain where drops are listed: a workgroup for each of these blocks.
+@compute @workgroup_size(8, 8, 1)
+fn main_drops(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_id) local: vec3u,
+) {
+    let place = group.y * groups.x + group.x;
+    let last = arrayLength(&drops_tiles) - 1u;
+    if place >= drops_tiles[last] {
+        return;
+    }
+    let number = drops_tiles[last - 1u - place];
+    let across = (drops_frame.camera.width + DROPS_TILE - 1u) / DROPS_TILE;
+    let block = vec2u(number % across, number / across);
+    let pixel = block * DROPS_TILE + local.xy;
+    if pixel.x >= drops_frame.camera.width || pixel.y >= drops_frame.camera.height {
+        return;
+    }
+    let tile = drops_tile(block, drops_tiles[0], drops_frame.camera.width);
+    let shown = drops_over(pixel.x, pixel.y, drops_tiles[1u + tile], drops_tiles[2u + tile]);
+    drops_layer[pixel.y * drops_frame.camera.width + pixel.x] = shown;
 }

@@ -33,7 +33,8 @@ struct DropsFrame {
     visibility: f32,
     // Classes, from the first, whose means are made before a drop asks for them.
     made_classes: u32,
-    unused_b: u32,
+    // Drops of the list.
+    count: u32,
     unused_c: u32,
 }
 

@@ -287,8 +287,8 @@ fn project_class(row: f32) -> u32 {
 }
 
 // Samples of a drop so many pixels wide: of a streak those of a pixel, of a still drop those along an edge of one; 0: its light is
-// spread over the pixels about it.
-fn project_grid(width: f32, moves: bool) -> u32 {
+// spread over the pixels about it. A splash has fewer than a drop: it shows no picture of what is around it.
+fn project_grid(width: f32, moves: bool, is_splash: bool) -> u32 {
     if moves {
         if width < PROJECT_THIN {
             return 0u;
@@ -299,9 +299,9 @@ fn project_grid(width: f32, moves: bool) -> u32 {
         return 0u;
     }
     if width < 2.0 {
-        return 8u;
+        return select(8u, 5u, is_splash);
     }
-    return select(2u, 4u, width < 16.0);
+    return select(2u, select(4u, 3u, is_splash), width < 16.0);
 }
 
 // A drop on the picture; its reach is below 0 where it is on none.
@@ -353,7 +353,7 @@ fn project_drop(drop: EyeDrop) -> ProjectShown {
     // Circle of confusion of a thin lens.
     let blur = project_frame.aperture * abs(1.0 / distance - project_frame.inverse_focus) / camera.pixel_angle;
     let is_blurred = blur >= 1.0 && blur > 0.7 * width;
-    let grid = select(project_grid(width, path.moves), 0u, is_blurred);
+    let grid = select(project_grid(width, path.moves, is_splash), 0u, is_blurred);
     let spread = select(1.0, max(sqrt(0.75 * width * width + blur * blur), 1.0), is_blurred);
     var modes = ProjectModes(vec4f(0.0), vec2f(0.0), 0.0);
     if path.moves {

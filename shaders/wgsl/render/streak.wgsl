@@ -64,6 +64,25 @@ struct ScreenDrop {
     id: u32,
 }
 
+// True for a streak that covers so little of each pixel, and is so narrow, that it is summed up (drops_sum.wgsl).
+fn streak_is_summed(drop: ScreenDrop) -> bool {
+    let across = 2.0 * drop.slope * max(drop.weights.x, drop.weights.y);
+    let most = select(STREAK_SUM_COVER, STREAK_SUM_THIN, drop.grid == 0u);
+    let covers = across * across <= most * most * dot(drop.along, drop.along);
+    return drop.kind != DROPS_STILL && drop.reach > 0.0 && drop.reach <= STREAK_SUM_REACH && covers;
+}
+
+// First and last column (or row) of those within a range of pixels, from 0; (1, 0): there is none.
+fn streak_pixels(low: f32, high: f32, count: u32) -> vec2u {
+    let first = floor(low);
+    let last = ceil(high) - 1.0;
+    let limit = f32(count);
+    if last >= 0.0 && first < limit && first <= last {
+        return vec2u(u32(clamp(first, 0.0, limit - 1.0)), u32(clamp(last, 0.0, limit - 1.0)));
+    }
+    return vec2u(1u, 0u);
+}
+
 // Chord along which a ray passes a moving drop.
 struct StreakChord {
     // Unit direction of the motion on the oval, which is a circle of radius 1 here.

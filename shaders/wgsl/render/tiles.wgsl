@@ -1,4 +1,5 @@
-// Lists of drops for the tiles of a picture: in each list the drops that may touch the tile, nearest first.
+// Lists of drops for the tiles of a picture: in each list the drops that may touch the tile, nearest first, without streaks that are summed
+// up (drops_sum.wgsl).
 // Method: the drops of each tile are counted, a running sum of the counts gives each tile its part of the lists, the drops are put
 // there in any order, and each list is sorted by distance, then by id. So the lists do not depend on the order in which the device
 // works.
@@ -35,17 +36,6 @@ var<workgroup> tiles_keys: array<vec2u, TILES_SORTED>;
 // First entry and length of a list.
 var<workgroup> tiles_list: vec2u;
 
-// First and last column (or row) of those within a range of pixels, from 0; (1, 0): there is none.
-fn tiles_within(low: f32, high: f32, count: u32) -> vec2u {
-    let first = floor(low);
-    let last = ceil(high) - 1.0;
-    let limit = f32(count);
-    if last >= 0.0 && first < limit && first <= last {
-        return vec2u(u32(clamp(first, 0.0, limit - 1.0)), u32(clamp(last, 0.0, limit - 1.0)));
-    }
-    return vec2u(1u, 0u);
-}
-
 // First and last row of tiles that a drop may touch; (1, 0): there is none.
 fn tiles_rows(drop: ScreenDrop, edge: u32, size: vec2u) -> vec2u {
     if drop.reach <= 0.0 {
@@ -54,8 +44,8 @@ fn tiles_rows(drop: ScreenDrop, edge: u32, size: vec2u) -> vec2u {
     let end = drop.first + drop.screen_delta;
     let low = min(drop.first, end) - drop.reach;
     let high = max(drop.first, end) + drop.reach;
-    let columns = tiles_within(low.x, high.x, size.x);
-    let rows = tiles_within(low.y, high.y, size.y);
+    let columns = streak_pixels(low.x, high.x, size.x);
+    let rows = streak_pixels(low.y, high.y, size.y);
     if columns.x > columns.y || rows.x > rows.y {
         return vec2u(1u, 0u);
     }
@@ -80,11 +70,16 @@ fn tiles_columns(drop: ScreenDrop, row: u32, edge: u32, width: u32) -> vec2u {
     }
     let a = drop.first.x + drop.screen_delta.x * low;
     let b = drop.first.x + drop.screen_delta.x * high;
-    let columns = tiles_within(min(a, b) - drop.reach, max(a, b) + drop.reach, width);
+    let columns = streak_pixels(min(a, b) - drop.reach, max(a, b) + drop.reach, width);
     if columns.x > columns.y {
         return columns;
     }
     return columns / edge;
+}
+
+// True for a drop that is put on lists.
+fn tiles_is_listed(drop: ScreenDrop) -> bool {
+    return drop.reach > 0.0 && !streak_is_summed(drop);
 }
 
 // No fewer tiles of an edge than a drop may touch.
@@ -146,7 +141,7 @@ fn main_tiles_measure(
     let index = invocation_index(id, groups);
     if index < tiles_frame.count {
         let drop = tiles_drops[index];
-        for (var k = 0u; k < TILES_EDGES; k += 1u) {
+        for (var k = 0u; k < TILES_EDGES && tiles_is_listed(drop); k += 1u) {
             let bound = tiles_bound(drop, DROPS_TILE << k, tiles_frame.size);
             atomicAdd(&tiles_sums[k], bound);
         }
@@ -171,6 +166,9 @@ fn main_tiles_count(
         return;
     }
     let drop = tiles_drops[index];
+    if !tiles_is_listed(drop) {
+        return;
+    }
     let edge = tiles_edge();
     let across = (tiles_frame.size.x + edge - 1u) / edge;
     let rows = tiles_rows(drop, edge, tiles_frame.size);
@@ -228,6 +226,9 @@ fn main_tiles_place(
         return;
     }
     let drop = tiles_drops[index];
+    if !tiles_is_listed(drop) {
+        return;
+    }
     let edge = tiles_lists[0];
     let across = (tiles_frame.size.x + edge - 1u) / edge;
     let rows = tiles_rows(drop, edge, tiles_frame.size);
@@ -314,7 +315,7 @@ fn main_tiles_seen(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgr
     let drop = tiles_drops[index];
     let rows = tiles_rows(drop, 1u, tiles_frame.size);
     let end = drop.first.x + drop.screen_delta.x;
-    let columns = tiles_within(min(drop.first.x, end) - drop.reach, max(drop.first.x, end) + drop.reach, tiles_frame.size.x);
+    let columns = streak_pixels(min(drop.first.x, end) - drop.reach, max(drop.first.x, end) + drop.reach, tiles_frame.size.x);
     var seen = select(0.0, -1.0, rows.x > rows.y);
     for (var row = rows.x; row <= rows.y && seen == 0.0; row += 1u) {
         for (var column = columns.x; column <= columns.y && seen == 0.0; column += 1u) {

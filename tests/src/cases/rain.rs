@@ -12,6 +12,7 @@ use downpour_render::camera::Viewpoint;
 use downpour_render::gpu::RainPipeline;
 use downpour_render::light::LightSource;
 use downpour_render::picture::compose_pixel;
+use downpour_render::rain::drops::{drops_sums_distance, drops_sums_shown};
 use downpour_render::rain::layers::{layers_fresnel, layers_refracted};
 use downpour_render::rain::light::{DropLightForm, DropLightOptions};
 use downpour_render::rain::medium::MediumGrain;
@@ -27,14 +28,16 @@ use downpour_render::rain::{
     DropMasks, EnvironmentMap, Exposure, EyeMotion, MediumOptions, PanePlane, Rain, RainMedium, RainOptions,
     RefractionForm, ScreenDrop, StreakColor, StreakProfiles, StreakSamples, TemporalResponse,
 };
+use downpour_shaders::Kernel;
 use downpour_shaders::render::layers::{LAYERS, LAYERS_KERNEL};
 use downpour_shaders::render::medium::{
     MEDIUM, MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL, MEDIUM_SMOOTH_KERNEL,
     MEDIUM_SMOOTH_PARTS_KERNEL, MEDIUM_SPREAD, MEDIUM_STREAKS,
 };
 use downpour_shaders::render::rain::{
-    COMPOSE, COMPOSE_KERNEL, DROPS_KERNEL, STREAK, STREAK_CELL, STREAK_LIGHT_KERNEL, STREAK_RAYS,
-    STREAK_RAYS_KERNEL, STREAK_SPAN, STREAK_TABLE_KERNEL,
+    COMPOSE, COMPOSE_KERNEL, DROPS_KERNEL, DROPS_SUM_CLEAR_KERNEL, DROPS_SUM_FINISH_KERNEL,
+    DROPS_SUM_SCALE_KERNEL, DROPS_SUM_THIN_KERNEL, DROPS_SUM_WIDE_KERNEL, DROPS_UNLISTED_KERNEL, STREAK,
+    STREAK_CELL, STREAK_LIGHT_KERNEL, STREAK_RAYS, STREAK_RAYS_KERNEL, STREAK_SPAN, STREAK_TABLE_KERNEL,
 };
 use downpour_shaders::render::scene::{TRACE_KERNEL, TRACE_SEEN_KERNEL};
 use downpour_sim::field::{DropKind, FallingDrop};
@@ -209,6 +212,8 @@ enum Part {
     Medium,
     Seen,
     Filter,
+    /// Streaks that are summed up.
+    Sums,
     Drops,
     Layers,
 }
@@ -366,8 +371,24 @@ fn masks_case(
             let of_part = |table: &[[f32; 4]]| wanted.iter().map(|&k| table[k]).collect::<Vec<_>>();
             Ok(Run::of_pixels(STREAK_RAYS, &of_part(&table().entries), &of_part(&pass.streak_table()?)))
         }
+        Part::Sums => {
+            gpu.submit(&[pass.lamps(), pass.streaks(), pass.drops()].concat())?;
+            let light = lights.light(&rain.rows);
+            let sums = rain.sums(clean, masks, capture, &table(), &light);
+            // Of streaks that hardly show the distance is that of a few units.
+            let numbers = |sums: &[[u32; 4]]| -> Vec<[f32; 6]> {
+                let one = |&words: &[u32; 4]| {
+                    let [r, g, b, cover] = drops_sums_shown(words).to_array();
+                    let scene = f32::from_bits(words[0]);
+                    [r, g, b, cover, if cover > 1.0e-3 { drops_sums_distance(words) } else { 0.0 }, scene]
+                };
+                sums.iter().map(one).collect()
+            };
+            assert!(numbers(&sums).iter().filter(|of| of[3] > 1.0e-3).count() > 200);
+            Ok(Run::of_pixels(SIZE[0], &numbers(&sums), &numbers(&pass.sums()?)))
+        }
         Part::Drops => {
-            let drawn = [pass.lamps(), pass.streaks(), pass.medium(), vec![pass.drops()]];
+            let drawn = [pass.lamps(), pass.streaks(), pass.medium(), pass.drops()];
             gpu.submit(&drawn.concat())?;
             let layer = kept(&format!("{key} layer"), || {
                 let medium = rain.medium_light(lights).layer(clean);
@@ -376,7 +397,7 @@ fn masks_case(
             Ok(Run::of_pixels(SIZE[0], &layer, &pass.layer()?))
         }
         Part::Layers => {
-            let drawn = [pass.lamps(), pass.streaks(), pass.medium(), vec![pass.drops()]];
+            let drawn = [pass.lamps(), pass.streaks(), pass.medium(), pass.drops()];
             gpu.submit(&drawn.concat())?;
             // Before the same rain.
             let mut layer = pass.layer()?;
@@ -733,18 +754,29 @@ pub(super) fn functions() -> Vec<FunctionCase> {
     ]
 }
 
+/// What runs before the drops of lists.
+const SUMS: &[&Kernel] = &[
+    &DROPS_SUM_CLEAR_KERNEL,
+    &DROPS_SUM_SCALE_KERNEL,
+    &DROPS_SUM_THIN_KERNEL,
+    &DROPS_SUM_WIDE_KERNEL,
+    &DROPS_SUM_FINISH_KERNEL,
+    &DROPS_UNLISTED_KERNEL,
+];
+
 /// The cases.
 pub(super) fn kernels() -> Vec<KernelCase> {
     let drops = |name, run| KernelCase {
         name,
         kernel: &DROPS_KERNEL,
-        with: &[],
+        with: SUMS,
         overrides: &[],
         text: None,
         tol: DRAWN,
         run,
     };
-    let means = |name, run| KernelCase { kernel: &STREAK_TABLE_KERNEL, tol: TABLED, ..drops(name, run) };
+    let means =
+        |name, run| KernelCase { kernel: &STREAK_TABLE_KERNEL, with: &[], tol: TABLED, ..drops(name, run) };
     let medium = |name, kernel, run| KernelCase {
         name,
         kernel,
@@ -901,6 +933,18 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             let exposure = exposure(1.0 / 60.0, StreakSamples::Table);
             rain_case(gpu, LEVEL, RefractionForm::Direction, exposure, Part::Drops)
         }),
+        KernelCase {
+            name: "main_drops_sum_finish: streaks by the table",
+            kernel: &DROPS_SUM_FINISH_KERNEL,
+            with: &SUMS[..4],
+            overrides: &[],
+            text: None,
+            tol: DRAWN,
+            run: |gpu| {
+                let exposure = exposure(1.0 / 60.0, StreakSamples::Table);
+                rain_case(gpu, LEVEL, RefractionForm::Direction, exposure, Part::Sums)
+            },
+        },
         drops("main_drops: streaks that are more visible", |gpu| {
             let exposure = Exposure { streak_length: 0.5, ..exposure(1.0 / 60.0, StreakSamples::Table) };
             let options = RainOptions { exposure, visibility: 3.0, ..RainOptions::default() };

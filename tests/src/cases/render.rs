@@ -1,5 +1,6 @@
 //! `shaders/wgsl/render` against `downpour-render`, a file per shader.
 
+mod drops_sum;
 mod glow;
 mod project;
 mod refine;
@@ -14,6 +15,7 @@ use crate::{FunctionCase, KernelCase};
 #[must_use]
 pub(super) fn functions() -> Vec<FunctionCase> {
     [
+        drops_sum::functions(),
         project::functions(),
         refine::functions(),
         specimen::functions(),

@@ -44,11 +44,12 @@ impl KeptLight {
         table: &wgpu::Buffer,
     ) -> KeptMeans {
         static NEXT: AtomicU32 = AtomicU32::new(0);
-        // Means have no random numbers.
+        // Means have no random numbers, and are not of single drops.
         let seedless = |frame: &DropsFrame| DropsFrame {
             camera: Camera { seed: 0, ..frame.camera },
             known: 0,
             made_classes: 0,
+            count: 0,
             ..*frame
         };
         let same = last.filter(|last| {

@@ -7,10 +7,11 @@ use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, made_on
 use downpour_math::pyramid::PyramidLevel;
 use downpour_shaders::common::PYRAMID_KERNEL;
 use downpour_shaders::render::rain::{
-    DROPS_KERNEL, STREAK_LIGHT_KERNEL, STREAK_RAYS, STREAK_RAYS_KERNEL, STREAK_TABLE_KERNEL,
+    STREAK_LIGHT_KERNEL, STREAK_RAYS, STREAK_RAYS_KERNEL, STREAK_TABLE_KERNEL,
 };
 
 use super::drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
+use super::drops::{DropsOf, DropsPass, DropsPipeline};
 use super::kept_light::KeptLight;
 use super::layers::{LayersPass, LayersPipeline};
 use super::medium::{MediumPass, MediumPipeline};
@@ -36,7 +37,7 @@ pub struct RainPipeline {
     tiles: TilesPipeline,
     lamps: DropLightPipeline,
     medium: MediumPipeline,
-    drops: ComputeKernel,
+    drops: DropsPipeline,
     /// Made for the first picture with layers.
     layers: Arc<OnceLock<LayersPipeline>>,
     /// Made for the first picture with spray.
@@ -57,7 +58,6 @@ pub struct RainOnGpu {
 #[derive(Debug)]
 pub struct RainPass<'a> {
     pipeline: &'a RainPipeline,
-    size: [u32; 2],
     levels: Vec<(wgpu::BindGroup, u32)>,
     project: Option<ProjectPass<'a>>,
     means: (wgpu::BindGroup, u32),
@@ -69,7 +69,7 @@ pub struct RainPass<'a> {
     tiles: TilesPass<'a>,
     lamps: [DropLightPass<'a>; 2],
     medium: MediumPass<'a>,
-    drops: wgpu::BindGroup,
+    drops: DropsPass<'a>,
     spray: Option<SprayPass>,
     layers: Option<LayersPass>,
     texels: wgpu::Buffer,
@@ -98,7 +98,7 @@ impl RainPipeline {
             tiles: TilesPipeline::new(gpu)?,
             lamps: DropLightPipeline::new(gpu)?,
             medium: MediumPipeline::new(gpu)?,
-            drops: kernel(&DROPS_KERNEL)?,
+            drops: DropsPipeline::new(gpu)?,
             layers: Arc::default(),
             spray: Arc::default(),
         })
@@ -238,7 +238,8 @@ impl RainPipeline {
         let picture = rain.frame.camera.size();
         let pixels = u64::from(picture[0]) * u64::from(picture[1]);
         let layer = buffers.buffer("rain", pixels * 16, storage)?;
-        let frame = buffers.uniform("drops frame", &rain.frame)?;
+        let of_drops = DropsFrame { count: drops.count, ..rain.frame };
+        let frame = buffers.uniform("drops frame", &of_drops)?;
         let tiles =
             self.tiles.prepare(buffers, &drops.list, clean, &TilesFrame::new(picture, drops.count))?;
         let [rays, entries] = drops.room.map(|count| u64::from(count.max(1)));
@@ -251,19 +252,19 @@ impl RainPipeline {
         let all = [&frame, &texels, &drops.list, &drops.paths, light_jobs, &rays, lamps[1].light(), &table];
         let lit = self.light.bind(buffers, &all)?;
         let medium = self.medium.prepare(buffers, plate, &rain.medium_light(&lights[0]), &layer)?;
-        let bindings = [
-            &frame,
-            &texels,
-            &masks.masks,
-            &drops.list,
-            tiles.lists(),
+        let of = DropsOf {
+            frame: &frame,
+            texels: &texels,
+            masks: &masks.masks,
+            list: &drops.list,
+            tiles: tiles.lists(),
             clean,
-            &layer,
-            &table,
-            lamps[0].light(),
-            medium.frame(),
-        ];
-        let shown = self.drops.bind(buffers, &bindings)?;
+            layer: &layer,
+            table: &table,
+            light: lamps[0].light(),
+            medium: medium.frame(),
+        };
+        let shown = self.drops.prepare(buffers, picture, drops.count, &of)?;
         let spray = match &rain.spray {
             Some(spray) if !lights[0].lighting.is_open() => {
                 let of = SprayOf {
@@ -288,7 +289,6 @@ impl RainPipeline {
         };
         Ok(RainPass {
             pipeline: self,
-            size: picture,
             levels,
             project,
             means,
@@ -304,7 +304,7 @@ impl RainPipeline {
             texels,
             table,
             layer,
-            frame: (rain.frame, frame),
+            frame: (of_drops, frame),
             classes: rain.profiles.classes.clone(),
         })
     }
@@ -430,11 +430,18 @@ impl RainPass<'_> {
         self.medium.found()
     }
 
-    /// Drops in the pixels, after all else.
+    /// Drops in the pixels, in this order, after all else.
     #[must_use]
-    pub fn drops(&self) -> Dispatch<'_> {
-        let groups = [self.size[0].div_ceil(8), self.size[1].div_ceil(8), 1];
-        self.pipeline.drops.dispatch(&self.drops, groups)
+    pub fn drops(&self) -> Vec<Dispatch<'_>> {
+        self.drops.dispatches()
+    }
+
+    /// Reads what streaks show that were summed up, as [`Rain::sums`] has it; after [`RainPass::drops`].
+    ///
+    /// # Errors
+    /// Returns the error of the GPU.
+    pub fn sums(&self) -> Result<Vec<[u32; 4]>, GpuError> {
+        self.drops.summed()
     }
 
     /// Spray behind that, if the rain has some, in this order; after [`RainPass::drops`].

@@ -71,7 +71,8 @@ impl TilesPipeline {
         let storage = wgpu::BufferUsages::STORAGE;
         let tiles = frame.tiles();
         let counts = buffers.buffer("drops of tiles", u64::from(TILES_HEAD + tiles) * 4, storage)?;
-        let words = 2 + u64::from(tiles) + u64::from(frame.room);
+        // Behind the lists the drops' kernels note the tiles in which there are drops, and their number.
+        let words = 3 + 2 * u64::from(tiles) + u64::from(frame.room);
         let lists = buffers.buffer("tiles of drops", words * 4, storage)?;
         let uniform = buffers.uniform("tiles frame", frame)?;
         let all = [&uniform, drops, &counts, &lists];

@@ -6,8 +6,9 @@ use downpour_math::packing::packing_unpack_half;
 use downpour_shaders::render::drop_light::DROP_ATLAS_ROWS;
 use downpour_shaders::render::medium::{MEDIUM_SKY, MEDIUM_SKY_REACH};
 use downpour_shaders::render::rain::{
-    DROPS_ATLAS_TAPS, DROPS_BENT, DROPS_LOOP, DROPS_MAX_BENT, DROPS_OPAQUE, DROPS_SMALL_GRID, DROPS_STILL,
-    DROPS_TABLE, PROJECT_DIAMETERS, STREAK_FINE, STREAK_GOLDEN, STREAK_LATTICE, STREAK_WHITE,
+    DROPS_ATLAS_TAPS, DROPS_BENT, DROPS_FAR, DROPS_LOOP, DROPS_MAX_BENT, DROPS_OPAQUE, DROPS_SMALL_GRID,
+    DROPS_STILL, DROPS_TABLE, DROPS_TILE, PROJECT_DIAMETERS, STREAK_FINE, STREAK_GOLDEN, STREAK_LATTICE,
+    STREAK_WHITE,
 };
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
@@ -19,6 +20,7 @@ use super::drops_medium::drops_medium;
 use super::drops_shade::DropsShade;
 use super::environment::EnvironmentMap;
 use super::glint::{drop_glint_right, drop_glint_rousseau};
+use super::medium::MediumFrame;
 use super::medium::fog::medium_fog_depth;
 use super::streak::{
     ScreenDrop, StreakChord, streak_chord, streak_cover, streak_depth, streak_mask_position, streak_nearest,
@@ -89,20 +91,126 @@ pub fn drops_bent(direction: Vec3) -> f32 {
     (square * DROPS_BENT).min(DROPS_MAX_BENT)
 }
 
-/// Data that the kernel reads.
-struct Buffers<'a> {
-    view: DropsView<'a>,
-    rain: &'a Rain,
-    tiles: &'a TileLists,
+/// The tile of the lists that has a block of 8 by 8 pixels of a picture so wide, where tiles are so wide.
+#[must_use]
+pub fn drops_tile(block: [u32; 2], edge: u32, width: u32) -> u32 {
+    let [column, row] = block.map(|place| place * DROPS_TILE / edge);
+    row * width.div_ceil(edge) + column
+}
+
+/// What streaks show together that were summed up: radiance times coverage, and coverage.
+#[must_use]
+pub fn drops_sums_shown(sums: [u32; 4]) -> Vec4 {
+    let [_, low, high, cover] = sums;
+    let green = (low >> 21) | ((high & 0x3ff) << 11);
+    let [red, green, blue] = [low & 0x1f_ffff, green, high >> 10].map(|color| f32::from_bits(color << 10));
+    Vec4::new(red, green, blue, (cover & 0xffff) as f32 / 65_535.0)
+}
+
+/// How far away they are on the mean, m.
+#[must_use]
+pub fn drops_sums_distance(sums: [u32; 4]) -> f32 {
+    f32::from_bits(sums[3] & 0xffff_0000)
+}
+
+/// What is before a pixel besides drops of its list.
+struct DropsAir<'a> {
+    frame: &'a MediumFrame,
+    /// The pixel's ray.
+    direction: Vec3,
+    /// The part of it in which drops are drawn.
+    span: Vec3,
+    /// Distance of the scene, m.
+    scene: f32,
+    /// Where the medium ends before it, m.
+    end: f32,
+    /// Optical depth of the medium.
+    depth: f32,
+    /// Its factor.
+    thinned: f32,
+    /// What drops of the medium show.
+    medium: Vec3,
+    /// What fog shows.
+    fog: Vec3,
+    /// Light of lamps on the medium.
+    lamps: Vec3,
+    /// Its mean distance, m.
+    lamps_at: f32,
+    /// Streaks that were summed up: radiance times coverage, coverage.
+    streaks: Vec4,
+    /// Their mean distance, m.
+    streaks_at: f32,
+}
+
+/// What is seen of a pixel from the eye to some distance.
+#[derive(Clone, Copy)]
+struct DropsSeen {
+    radiance: Vec3,
+    /// What drops let through.
+    transmittance: f32,
+    /// What the medium lets through.
+    left: f32,
+    /// What fog lets through.
+    clear: f32,
+    /// True if the light of lamps on the medium is in it.
+    has_lamps: bool,
+    /// True if the streaks that were summed up are.
+    has_streaks: bool,
+}
+
+/// Goes on to a drop at a distance, with the medium and the fog before it.
+fn drops_behind(seen: &mut DropsSeen, air: &DropsAir<'_>, shown: Vec4, distance: f32) {
+    let at = distance.min(air.end);
+    if !seen.has_lamps && at > air.lamps_at {
+        seen.radiance += air.lamps * seen.transmittance;
+        seen.has_lamps = true;
+    }
+    let here = ops::exp(-air.frame.medium_depth(at, air.span, 1.0) * air.thinned).min(seen.left);
+    let through = air.frame.medium_fog(air.direction, at);
+    // What a part of the way takes out, left * clear - here * through, is shared by medium and fog.
+    let between = air.medium * ((seen.left - here) * (0.5 * (seen.clear + through)));
+    let fog = air.fog * ((seen.clear - through) * (0.5 * (seen.left + here)));
+    seen.radiance += seen.transmittance * (between + fog + shown.truncate() * (here * through));
+    seen.clear = through;
+    seen.transmittance *= 1.0 - shown.w;
+    seen.left = here;
+}
+
+/// Goes on to the streaks that were summed up, if they are nearer than a distance.
+fn drops_behind_streaks(seen: &mut DropsSeen, air: &DropsAir<'_>, distance: f32) {
+    if !seen.has_streaks && air.streaks.max_element() > 0.0 && air.streaks_at < distance {
+        drops_behind(seen, air, air.streaks, air.streaks_at);
+        seen.has_streaks = true;
+    }
+}
+
+/// The rain over a pixel: radiance, and the transmittance of the scene behind it, by what is seen up to the last drop.
+fn drops_whole(mut seen: DropsSeen, air: &DropsAir<'_>) -> Vec4 {
+    drops_behind_streaks(&mut seen, air, DROPS_FAR);
+    let DropsSeen { mut radiance, transmittance, left, clear, has_lamps, .. } = seen;
+    if !has_lamps {
+        radiance += air.lamps * transmittance;
+    }
+    let last = ops::exp(-air.depth).min(left);
+    let whole = air.frame.medium_fog(air.direction, air.scene);
+    radiance += air.medium * (transmittance * (left - last) * (0.5 * (clear + whole)));
+    radiance += air.fog * (transmittance * (clear - whole) * (0.5 * (left + last)));
+    radiance.extend(transmittance * last * whole)
+}
+
+/// Data that the kernels read.
+pub(super) struct Buffers<'a> {
+    pub(super) view: DropsView<'a>,
+    pub(super) rain: &'a Rain,
     table: &'a StreakTable,
     light: &'a [[f32; 4]],
-    clean: &'a [[f32; 4]],
+    pub(super) clean: &'a [[f32; 4]],
     medium: &'a [[f32; 4]],
 }
 
 impl Buffers<'_> {
     /// A drop's numbers of light.
-    fn drops_glint_row(&self, index: u32) -> &[[f32; 4]] {
+    pub(super) fn drops_glint_row(&self, index: u32) -> &[[f32; 4]] {
         let stride = 1 + self.view.frame.glints as usize;
         let first = index as usize * stride;
         self.light.get(first..first + stride).unwrap_or(&[[0.0; 4]])
@@ -274,18 +382,20 @@ impl Buffers<'_> {
         (sum.truncate() / sum.w.max(1.0e-20)).extend(1.0) * ((chord.high - chord.low) * 0.5)
     }
 
-    /// The streak of a drop over a pixel: radiance times coverage, and coverage.
-    fn drops_streak(&self, index: u32, drop: &ScreenDrop, x: u32, y: u32) -> Vec4 {
-        let size = Vec2::new(self.view.frame.camera.width as f32, self.view.frame.camera.height as f32);
-        if drop.grid == 0 {
-            let cover = streak_cover(drop, x, y);
-            if cover <= 0.0 {
-                return Vec4::ZERO;
-            }
-            let position = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / size;
-            let light = self.drops_beads(index, drop, x, y);
-            return (self.table.streak_lookup_mean(drop.shape, position) + light).extend(1.0) * cover;
+    /// The streak of a drop that is not sampled over a pixel: radiance times coverage, and coverage.
+    pub(super) fn drops_thin(&self, index: u32, drop: &ScreenDrop, x: u32, y: u32) -> Vec4 {
+        let cover = streak_cover(drop, x, y);
+        if cover <= 0.0 {
+            return Vec4::ZERO;
         }
+        let size = Vec2::new(self.view.frame.camera.width as f32, self.view.frame.camera.height as f32);
+        let position = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / size;
+        let light = self.drops_beads(index, drop, x, y);
+        (self.table.streak_lookup_mean(drop.shape, position) + light).extend(1.0) * cover
+    }
+
+    /// The streak of a drop that is sampled over a pixel.
+    pub(super) fn drops_wide(&self, index: u32, drop: &ScreenDrop, x: u32, y: u32) -> Vec4 {
         let towards = Vec3::from(drop.towards);
         let right = drop_glint_right(towards);
         let up = right.cross(towards);
@@ -329,14 +439,9 @@ impl Buffers<'_> {
         sum
     }
 
-    /// A drop over a pixel whose scene is `scene` meters away: radiance times coverage, and coverage.
-    fn drops_pixel(&self, index: u32, x: u32, y: u32, scene: f32) -> Vec4 {
-        let drop = &self.rain.list[index as usize];
-        let mut shown = if drop.kind == DROPS_STILL {
-            self.drops_still(index, drop, x, y)
-        } else {
-            self.drops_streak(index, drop, x, y)
-        };
+    /// What a drop over a pixel shows before a scene that is `scene` meters away.
+    pub(super) fn drops_shown(&self, drop: &ScreenDrop, light: Vec4, x: u32, y: u32, scene: f32) -> Vec4 {
+        let mut shown = light;
         if shown.max_element() <= 0.0 {
             return Vec4::ZERO;
         }
@@ -348,6 +453,19 @@ impl Buffers<'_> {
         drops_visible(seen, self.view.frame.visibility)
     }
 
+    /// A drop over a pixel whose scene is `scene` meters away: radiance times coverage, and coverage.
+    fn drops_pixel(&self, index: u32, x: u32, y: u32, scene: f32) -> Vec4 {
+        let drop = &self.rain.list[index as usize];
+        let shown = if drop.kind == DROPS_STILL {
+            self.drops_still(index, drop, x, y)
+        } else if drop.grid == 0 {
+            self.drops_thin(index, drop, x, y)
+        } else {
+            self.drops_wide(index, drop, x, y)
+        };
+        self.drops_shown(drop, shown, x, y, scene)
+    }
+
     /// Mean radiance that fog scatters into a ray: the capture about the ray, over the solid angle of an even cone whose mean cosine
     /// is the asymmetry of the phase function.
     fn drops_fog(&self, direction: Vec3) -> Vec3 {
@@ -355,12 +473,11 @@ impl Buffers<'_> {
         self.view.drops_capture_about(direction, direction, medium.fog_phase[0]) * medium.fog[3]
     }
 
-    /// The rain over a pixel: radiance, and the transmittance of the scene behind it. Drops are in order of their nearest
-    /// points, with the medium and the fog between them.
-    fn drops_over(&self, x: u32, y: u32) -> Vec4 {
+    /// What is before a pixel besides drops of its list.
+    fn drops_air(&self, x: u32, y: u32, sums: [u32; 4]) -> DropsAir<'_> {
         let (frame, medium) = (self.view.frame, &self.rain.medium);
         let index = (y * frame.camera.width + x) as usize;
-        let scene = self.clean[index][3];
+        let scene = f32::from_bits(sums[0]);
         let lamps = self.medium.get(index).copied().map_or(Vec4::ZERO, Vec4::from);
         // Mean distance of the medium's light of lamps, and its optical depth.
         let [mean, mut depth] = packing_unpack_half(lamps.w.to_bits());
@@ -378,52 +495,48 @@ impl Buffers<'_> {
             lamps *= 1.0 + (drops.y - 1.0) * rainy;
             depth *= drops.x;
         }
-        // Air that rain does not reach thins the medium; evenly, as far as drops between it go.
-        let thinned = depth / medium.medium_depth(end, span, 1.0).max(1.0e-12);
-        let shown_medium = if depth > 0.0 {
-            drops_medium(&self.view, self.table, &self.rain.medium, x, y)
-        } else {
-            Vec3::ZERO
+        DropsAir {
+            frame: medium,
+            direction,
+            span,
+            scene,
+            end,
+            depth,
+            // Air that rain does not reach thins the medium; evenly, as far as drops between it go.
+            thinned: depth / medium.medium_depth(end, span, 1.0).max(1.0e-12),
+            medium: if depth > 0.0 { drops_medium(&self.view, self.table, medium, x, y) } else { Vec3::ZERO },
+            fog: if medium.fog[0] > 0.0 { self.drops_fog(direction) } else { Vec3::ZERO },
+            lamps,
+            lamps_at: mean,
+            streaks: drops_sums_shown(sums),
+            streaks_at: drops_sums_distance(sums),
+        }
+    }
+
+    /// The rain over a pixel with a list of drops in order of their nearest points, with the medium and the fog between them.
+    fn drops_over(&self, x: u32, y: u32, list: &[u32], sums: [u32; 4]) -> Vec4 {
+        let air = self.drops_air(x, y, sums);
+        let mut seen = DropsSeen {
+            radiance: Vec3::ZERO,
+            transmittance: 1.0,
+            left: 1.0,
+            clear: 1.0,
+            has_lamps: false,
+            has_streaks: false,
         };
-        let shown_fog = if medium.fog[0] > 0.0 { self.drops_fog(direction) } else { Vec3::ZERO };
-        let (mut radiance, mut transmittance) = (Vec3::ZERO, 1.0);
-        let mut behind = true;
-        // Transmittance of the medium up to here.
-        let mut left = 1.0f32;
-        // That of the fog.
-        let mut clear = 1.0f32;
-        for &index in self.tiles.of_pixel(x, y) {
+        for &index in list {
             let drop = &self.rain.list[index as usize];
-            if drop.nearest >= scene || transmittance < DROPS_OPAQUE {
+            if drop.nearest >= air.scene || seen.transmittance < DROPS_OPAQUE {
                 break;
             }
-            let shown = self.drops_pixel(index, x, y, scene);
+            let shown = self.drops_pixel(index, x, y, air.scene);
             if shown.max_element() <= 0.0 {
                 continue;
             }
-            let distance = drop.distance.min(end);
-            if behind && distance > mean {
-                radiance += lamps * transmittance;
-                behind = false;
-            }
-            let here = ops::exp(-medium.medium_depth(distance, span, 1.0) * thinned).min(left);
-            let seen = medium.medium_fog(direction, distance);
-            // What a part of the way takes out, left * clear - here * seen, is shared by medium and fog.
-            let between = shown_medium * ((left - here) * (0.5 * (clear + seen)));
-            let fog = shown_fog * ((clear - seen) * (0.5 * (left + here)));
-            radiance += transmittance * (between + fog + shown.truncate() * (here * seen));
-            clear = seen;
-            transmittance *= 1.0 - shown.w;
-            left = here;
+            drops_behind_streaks(&mut seen, &air, drop.distance);
+            drops_behind(&mut seen, &air, shown, drop.distance);
         }
-        if behind {
-            radiance += lamps * transmittance;
-        }
-        let last = ops::exp(-depth).min(left);
-        let whole = medium.medium_fog(direction, scene);
-        radiance += shown_medium * (transmittance * (left - last) * (0.5 * (clear + whole)));
-        radiance += shown_fog * (transmittance * (clear - whole) * (0.5 * (left + last)));
-        radiance.extend(transmittance * last * whole)
+        drops_whole(seen, &air)
     }
 }
 
@@ -447,6 +560,20 @@ impl Rain {
         StreakTable { entries }
     }
 
+    /// What streaks show of each pixel that are summed up, in the shader's layout; arguments as of [`Rain::layer`].
+    #[must_use]
+    pub fn sums(
+        &self,
+        clean: &[[f32; 4]],
+        masks: &DropMasks,
+        environment: &EnvironmentMap,
+        table: &StreakTable,
+        light: &[[f32; 4]],
+    ) -> Vec<[u32; 4]> {
+        let view = DropsView { frame: &self.frame, masks: &masks.words, capture: &environment.texels };
+        Buffers { view, rain: self, table, light, clean, medium: &[] }.sums()
+    }
+
     /// The rain over a scene: radiance, and the transmittance of the scene behind it; rows from the top. `clean` is the
     /// scene's picture with its distances, `light` what lamps add to each drop of the list
     /// ([`DropLights::light`](super::light::DropLights::light); nothing where it is empty), `medium` the drops that are not
@@ -463,11 +590,14 @@ impl Rain {
     ) -> Vec<[f32; 4]> {
         let view = DropsView { frame: &self.frame, masks: &masks.words, capture: &environment.texels };
         let tiles = TileLists::new(&self.list, self.frame.camera.size());
-        let buffers = Buffers { view, rain: self, tiles: &tiles, table, light, clean, medium };
-        let (width, buffers) = (self.frame.camera.width, &buffers);
+        let buffers = Buffers { view, rain: self, table, light, clean, medium };
+        let sums = buffers.sums();
+        let (width, buffers, tiles, sums) = (self.frame.camera.width, &buffers, &tiles, sums.as_slice());
+        let pixel =
+            |x, y| buffers.drops_over(x, y, tiles.of_pixel(x, y), sums[(y * width + x) as usize]).to_array();
         (0..self.frame.camera.height)
             .into_par_iter()
-            .flat_map_iter(|y| (0..width).map(move |x| buffers.drops_over(x, y).to_array()))
+            .flat_map_iter(|y| (0..width).map(move |x| pixel(x, y)))
             .collect()
     }
 }

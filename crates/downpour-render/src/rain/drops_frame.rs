@@ -47,8 +47,8 @@ pub struct DropsFrame {
     pub visibility: f32,
     /// Classes, from the first, whose means are made before a drop asks for them.
     pub made_classes: u32,
-    /// 0.
-    pub unused_b: u32,
+    /// Drops of the list.
+    pub count: u32,
     /// 0.
     pub unused_c: u32,
 }
@@ -90,7 +90,7 @@ impl DropsFrame {
             atlas: if options.light.form == DropLightForm::Atlas { masks.atlas } else { 0 },
             visibility: options.visibility as f32,
             made_classes: 0,
-            unused_b: 0,
+            count: 0,
             unused_c: 0,
         }
     }

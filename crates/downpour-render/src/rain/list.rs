@@ -12,8 +12,8 @@ use super::medium::{MediumFrame, MediumLight, lamps_of};
 use super::profiles::StreakProfiles;
 use super::project::{Projected, Projector, project_axis, project_row};
 use super::spray::{SprayBlend, SprayFrame, SprayMap, SprayView};
-use super::streak::ScreenDrop;
-use super::tiles::tiles_within;
+use super::streak::{ScreenDrop, streak_pixels};
+
 use super::{DropMasks, RainOptions, StreakTable};
 use crate::RenderError;
 use crate::camera::Camera;
@@ -221,7 +221,7 @@ fn pixels(drop: &ScreenDrop, [width, height]: [u32; 2]) -> Option<[u32; 4]> {
     }
     let (from, way) = (Vec2::from(drop.first), Vec2::from(drop.screen_delta));
     let (low, high) = (from.min(from + way) - drop.reach, from.max(from + way) + drop.reach);
-    let [left, right] = tiles_within(low.x, high.x, width)?;
-    let [top, bottom] = tiles_within(low.y, high.y, height)?;
+    let [left, right] = streak_pixels(low.x, high.x, width)?;
+    let [top, bottom] = streak_pixels(low.y, high.y, height)?;
     Some([left, right, top, bottom])
 }

@@ -157,16 +157,28 @@ pub fn project_class(row: f32) -> u32 {
 }
 
 /// Samples of a drop so many pixels wide: of a streak those of a pixel, of a still drop those along an edge of one; 0: its light
-/// is spread over the pixels about it.
+/// is spread over the pixels about it. A splash has fewer than a drop: it shows no picture of what is around it.
 #[must_use]
-pub fn project_grid(width: f32, moves: bool) -> u32 {
+pub fn project_grid(width: f32, moves: bool, is_splash: bool) -> u32 {
     match width {
         d if moves && d < PROJECT_THIN => 0,
         d if moves && d < PROJECT_NARROW => PROJECT_NARROW_SAMPLES,
         _ if moves => PROJECT_WIDE_SAMPLES,
         d if d < PROJECT_SMALL => 0,
-        d if d < 2.0 => 8,
-        d if d < 16.0 => 4,
+        d if d < 2.0 => {
+            if is_splash {
+                5
+            } else {
+                8
+            }
+        }
+        d if d < 16.0 => {
+            if is_splash {
+                3
+            } else {
+                4
+            }
+        }
         _ => 2,
     }
 }
@@ -377,7 +389,7 @@ impl<'a> Projector<'a> {
         // Circle of confusion of a thin lens.
         let blur = frame.aperture * (1.0 / distance - frame.inverse_focus).abs() / camera.pixel_angle;
         let is_blurred = blur >= 1.0 && blur > 0.7 * width;
-        let grid = if is_blurred { 0 } else { project_grid(width, path.moves) };
+        let grid = if is_blurred { 0 } else { project_grid(width, path.moves, is_splash) };
         let spread = if is_blurred { (0.75 * width * width + blur * blur).sqrt().max(1.0) } else { 1.0 };
         let modes =
             if path.moves { self.project_modes(drop, towards, path.part) } else { ProjectModes::default() };

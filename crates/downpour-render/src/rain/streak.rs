@@ -4,7 +4,9 @@
 use downpour_drop::oscillation::{
     drop_oscillation_outline, drop_oscillation_radius, drop_oscillation_sine, drop_oscillation_state,
 };
-use downpour_shaders::render::rain::STREAK_GAUSS;
+use downpour_shaders::render::rain::{
+    DROPS_STILL, STREAK_GAUSS, STREAK_SUM_COVER, STREAK_SUM_REACH, STREAK_SUM_THIN,
+};
 use glam::{Vec2, Vec3};
 
 /// A drop in the picture. The same layout as `ScreenDrop` in WGSL.
@@ -63,6 +65,25 @@ pub struct ScreenDrop {
     pub reach: f32,
     /// Its id in 32 bits.
     pub id: u32,
+}
+
+/// True for a streak that covers so little of each pixel, and is so narrow, that it is summed up ([`super::drops_sum`]).
+#[must_use]
+pub fn streak_is_summed(drop: &ScreenDrop) -> bool {
+    let (along, [first, last]) = (Vec2::from(drop.along), drop.weights);
+    let across = 2.0 * drop.slope * first.max(last);
+    let most = if drop.grid == 0 { STREAK_SUM_THIN } else { STREAK_SUM_COVER };
+    let covers = across * across <= most * most * along.dot(along);
+    drop.kind != DROPS_STILL && drop.reach > 0.0 && drop.reach <= STREAK_SUM_REACH && covers
+}
+
+/// First and last column (or row) of those within a range of pixels; `None` if there is none.
+#[must_use]
+pub fn streak_pixels(low: f32, high: f32, count: u32) -> Option<[u32; 2]> {
+    let (first, last) = (low.floor(), high.ceil() - 1.0);
+    // The comparison is false for what is no number.
+    (last >= 0.0 && first < count as f32 && first <= last)
+        .then(|| [first, last].map(|v| v.clamp(0.0, count as f32 - 1.0) as u32))
 }
 
 /// Chord along which a ray passes a moving drop.

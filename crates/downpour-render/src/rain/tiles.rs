@@ -1,5 +1,5 @@
-//! Lists of drops for the tiles of a picture: in each list the drops that may touch the tile, nearest first. Twin of
-//! `shaders/wgsl/render/tiles.wgsl`, where the method is described.
+//! Lists of drops for the tiles of a picture: in each list the drops that may touch the tile, nearest first, without streaks that are
+//! summed up. Twin of `shaders/wgsl/render/tiles.wgsl`, where the method is described.
 
 use std::cmp::Ordering;
 
@@ -8,13 +8,13 @@ use downpour_shaders::render::rain::{DROPS_TILE, TILES_EDGES};
 use glam::Vec2;
 use rayon::prelude::*;
 
-use super::streak::ScreenDrop;
+use super::streak::{ScreenDrop, streak_is_summed, streak_pixels};
 
 /// Drops that the lists of all tiles have room for, by the number of drops: on the mean a streak touches some ten tiles.
 const ROOM_PER_DROP: u32 = 32;
 
-/// Least and most room: 128 MiB, which every device binds, less the largest number of tiles.
-const ROOM: [u32; 2] = [1 << 18, (32 << 20) - (5 << 20)];
+/// Least and most room: 128 MiB, which every device binds, less twice the largest number of tiles.
+const ROOM: [u32; 2] = [1 << 18, (32 << 20) - (10 << 20)];
 
 /// Uniforms of the kernels. The same layout as `TilesFrame` in WGSL.
 #[repr(C)]
@@ -43,15 +43,6 @@ impl TilesFrame {
     }
 }
 
-/// First and last column (or row) of those within a range of pixels; `None` if there is none.
-#[must_use]
-pub fn tiles_within(low: f32, high: f32, count: u32) -> Option<[u32; 2]> {
-    let (first, last) = (low.floor(), high.ceil() - 1.0);
-    // The comparison is false for what is no number.
-    (last >= 0.0 && first < count as f32 && first <= last)
-        .then(|| [first, last].map(|v| v.clamp(0.0, count as f32 - 1.0) as u32))
-}
-
 /// First and last row of tiles that a drop may touch; `None` if there is none.
 #[must_use]
 pub fn tiles_rows(drop: &ScreenDrop, edge: u32, size: [u32; 2]) -> Option<[u32; 2]> {
@@ -60,8 +51,8 @@ pub fn tiles_rows(drop: &ScreenDrop, edge: u32, size: [u32; 2]) -> Option<[u32; 
     }
     let (first, way) = (Vec2::from(drop.first), Vec2::from(drop.screen_delta));
     let (low, high) = (first.min(first + way) - drop.reach, first.max(first + way) + drop.reach);
-    tiles_within(low.x, high.x, size[0])?;
-    tiles_within(low.y, high.y, size[1]).map(|rows| rows.map(|row| row / edge))
+    streak_pixels(low.x, high.x, size[0])?;
+    streak_pixels(low.y, high.y, size[1]).map(|rows| rows.map(|row| row / edge))
 }
 
 /// First and last tile of a row of tiles that the path of a drop may touch; `None` if there is none.
@@ -80,7 +71,14 @@ pub fn tiles_columns(drop: &ScreenDrop, row: u32, edge: u32, width: u32) -> Opti
         return None;
     }
     let (a, b) = (first.x + way.x * low, first.x + way.x * high);
-    tiles_within(a.min(b) - reach, a.max(b) + reach, width).map(|columns| columns.map(|column| column / edge))
+    streak_pixels(a.min(b) - reach, a.max(b) + reach, width)
+        .map(|columns| columns.map(|column| column / edge))
+}
+
+/// True for a drop that is put on lists.
+#[must_use]
+pub fn tiles_is_listed(drop: &ScreenDrop) -> bool {
+    drop.reach > 0.0 && !streak_is_summed(drop)
 }
 
 /// No fewer tiles of an edge than a drop may touch.
@@ -137,8 +135,18 @@ impl TileLists {
     /// The lists of some drops, with tiles so large that there is room.
     #[must_use]
     pub fn with_room(drops: &[ScreenDrop], size: [u32; 2], room: u32) -> Self {
+        Self::of(drops, size, room, tiles_is_listed)
+    }
+
+    /// Lists of all drops, those that are summed up among them.
+    #[must_use]
+    pub fn of_all(drops: &[ScreenDrop], size: [u32; 2]) -> Self {
+        Self::of(drops, size, TilesFrame::new(size, drops.len() as u32).room, |_| true)
+    }
+
+    fn of(drops: &[ScreenDrop], size: [u32; 2], room: u32, is_listed: fn(&ScreenDrop) -> bool) -> Self {
         let mut totals = [0; TILES_EDGES as usize];
-        for drop in drops {
+        for drop in drops.iter().filter(|drop| is_listed(drop)) {
             for (k, total) in totals.iter_mut().enumerate() {
                 *total += u64::from(tiles_bound(drop, DROPS_TILE << k, size));
             }
@@ -147,6 +155,9 @@ impl TileLists {
         let [across, down] = size.map(|pixels| pixels.div_ceil(edge));
         let touched = |index: u32, each: &mut dyn FnMut(usize)| {
             let drop = &drops[index as usize];
+            if !is_listed(drop) {
+                return;
+            }
             let Some([top, bottom]) = tiles_rows(drop, edge, size) else { return };
             for row in top..=bottom {
                 let Some([left, right]) = tiles_columns(drop, row, edge, size[0]) else { continue };

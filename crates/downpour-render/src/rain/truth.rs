@@ -28,7 +28,7 @@ impl Rain {
     #[must_use]
     pub fn truth(&self, clean: &[[f32; 4]]) -> Vec<Option<DropTruth>> {
         let [width, height] = self.frame.camera.size();
-        let tiles = TileLists::new(&self.list, [width, height]);
+        let tiles = TileLists::of_all(&self.list, [width, height]);
         let pixel = |(y, x): (u32, u32)| {
             let scene = clean[(y * width + x) as usize][3];
             let mut most: Option<DropTruth> = None;

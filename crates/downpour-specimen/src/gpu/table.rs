@@ -49,7 +49,7 @@ impl SpecimenTableRenderer {
             let pass = self.rains.prepare(&self.gpu, &plate.of(&clean), &masks, &streak.rain, &lights)?;
             let environment = plate.dispatches(&pass);
             let binning = pass.binning().concat();
-            for dispatches in [environment, binning, pass.lamps(), pass.streaks(), vec![pass.drops()]] {
+            for dispatches in [environment, binning, pass.lamps(), pass.streaks(), pass.drops()] {
                 self.gpu.submit(&dispatches)?;
                 // One submission at a time: software drivers queue without end.
                 self.gpu.wait()?;

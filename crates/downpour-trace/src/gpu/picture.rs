@@ -325,7 +325,7 @@ impl PictureRenderer {
         passes.run("lamps", &pass.lamps())?;
         passes.run("streaks", &pass.streaks())?;
         passes.run_each("unresolved", &pass.medium())?;
-        passes.run("drops", &[pass.drops(), pass.seen()])?;
+        passes.run("drops", &[pass.drops(), vec![pass.seen()]].concat())?;
         let spray = pass.spray();
         if !spray.is_empty() {
             passes.run("spray", &spray)?;

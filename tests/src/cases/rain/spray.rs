@@ -52,7 +52,7 @@ fn spray_case(gpu: &Gpu, placement: Placement, part: Part) -> Result<Run, GpuErr
     gpu.submit(&plate.dispatches(&pass))?;
     gpu.submit(&[pass.open_air()])?;
     gpu.submit(&pass.binning().concat())?;
-    gpu.submit(&[pass.lamps(), pass.streaks(), pass.medium(), vec![pass.drops()]].concat())?;
+    gpu.submit(&[pass.lamps(), pass.streaks(), pass.medium(), pass.drops()].concat())?;
     let mut layer = pass.layer()?;
     gpu.submit(&pass.spray())?;
     let (words, found) = pass.spray_found()?;

@@ -127,8 +127,8 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             exact,
             |a| project_class(a.f32()).words(),
         ),
-        FunctionCase::new("project_grid", &PROJECT, &[widths, Below(2)], exact, |a| {
-            project_grid(a.f32(), a.u32() == 1).words()
+        FunctionCase::new("project_grid", &PROJECT, &[widths, Below(2), Below(2)], exact, |a| {
+            project_grid(a.f32(), a.u32() == 1, a.u32() == 1).words()
         }),
         FunctionCase::new(
             "project_turn",
