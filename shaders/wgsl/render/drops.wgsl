@@ -137,12 +137,14 @@ fn drops_still(index: u32, drop: ScreenDrop, x: u32, y: u32) -> vec4f {
             sy = dot(lean, up) / extent;
         }
         if abs(sx) < 1.0 && abs(sy) < 1.0 {
-            var shown = drops_shade_ray(DropsShade(drop.towards, drop.half_extent, right, lean, spacing, drop.mask_index), sx, sy);
+            let texel = drops_mask_at(drop.mask_index, sx, sy);
+            let shade = DropsShade(drop.towards, drop.half_extent, right, lean, spacing, drop.mask_index);
+            var shown = drops_shade_texel(shade, texel, sx, sy);
             if !small {
                 var light: vec3f;
                 if drops_is_splash(drop) {
                     // Lamps shine on its rims as on so many small drops: no glint has its place on it.
-                    let bends = drops_bent(drops_mask_at(drop.mask_index, sx, sy).direction);
+                    let bends = drops_bent(texel.direction);
                     light = drops_light[drops_glint_row(index)].rgb * bends;
                 } else {
                     light = drops_glint_rest(index) + drops_facing(index, drop, sx, sy);

@@ -30,7 +30,11 @@ fn drops_shade_shifted(ray: vec3f, texel: DropsTexel) -> vec2f {
 
 // Light of a drop at (x, y), in units of half its mask: radiance times coverage, and coverage.
 fn drops_shade_ray(drop: DropsShade, x: f32, y: f32) -> vec4f {
-    let texel = drops_mask_at(drop.mask_index, x, y);
+    return drops_shade_texel(drop, drops_mask_at(drop.mask_index, x, y), x, y);
+}
+
+// The same by the values of the mask there.
+fn drops_shade_texel(drop: DropsShade, texel: DropsTexel, x: f32, y: f32) -> vec4f {
     if texel.coverage <= 0.0 {
         return vec4f(0.0);
     }

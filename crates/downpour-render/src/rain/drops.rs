@@ -332,11 +332,12 @@ impl Buffers<'_> {
                     spacing,
                     mask_index: drop.mask_index,
                 };
-                let mut shown = self.view.drops_shade_ray(&shade, sx, sy);
+                let texel = self.view.drops_mask_at(drop.mask_index, sx, sy);
+                let mut shown = self.view.drops_shade_texel(&shade, &texel, sx, sy);
                 if !small {
                     let light = if drops_is_splash(drop) {
                         // Lamps shine on its rims as on so many small drops: no glint has its place on it.
-                        let bends = drops_bent(self.view.drops_mask_at(drop.mask_index, sx, sy).direction);
+                        let bends = drops_bent(texel.direction);
                         Vec4::from(self.drops_glint_row(index)[0]).truncate() * bends
                     } else {
                         self.view.drops_glint_rest(self.drops_glint_row(index))

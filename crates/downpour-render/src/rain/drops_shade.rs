@@ -32,7 +32,11 @@ impl DropsView<'_> {
 
     /// Light of a drop at (x, y), in units of half its mask: radiance times coverage, and coverage.
     pub(super) fn drops_shade_ray(&self, drop: &DropsShade, x: f32, y: f32) -> Vec4 {
-        let texel = self.drops_mask_at(drop.mask_index, x, y);
+        self.drops_shade_texel(drop, &self.drops_mask_at(drop.mask_index, x, y), x, y)
+    }
+
+    /// The same by the values of the mask there.
+    pub(super) fn drops_shade_texel(&self, drop: &DropsShade, texel: &DropsTexel, x: f32, y: f32) -> Vec4 {
         if texel.coverage <= 0.0 {
             return Vec4::ZERO;
         }
@@ -42,7 +46,7 @@ impl DropsView<'_> {
         let q = ((x * x + y * y) * drop.half_extent * drop.half_extent).min(0.98);
         let bend = 2.0 / (1.0 - q).sqrt();
         if self.frame.form == DROPS_SHIFT {
-            let position = self.drops_shade_shifted(drop.towards + drop.lean, &texel);
+            let position = self.drops_shade_shifted(drop.towards + drop.lean, texel);
             let sum = self.drops_capture_at(position, drop.spacing * (bend - DROPS_STRAIGHT));
             return sum.extend(1.0) * texel.coverage;
         }
