@@ -226,7 +226,9 @@ fn drops_wide(index: u32, drop: ScreenDrop, x: u32, y: u32) -> vec4f {
         if chord.high <= chord.low {
             continue;
         }
-        if !by_profile {
+        if !by_profile && drops_frame.streak_color == STREAK_WHITE {
+            sum.w += 0.5 * (chord.high - chord.low) * chord.fraction;
+        } else if !by_profile {
             sum += drops_chord(index, drop, chord, ray) * chord.fraction;
         }
         if drops_frame.atlas > 0u {

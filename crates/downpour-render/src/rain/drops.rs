@@ -421,7 +421,9 @@ impl Buffers<'_> {
             if chord.high <= chord.low {
                 continue;
             }
-            if !by_profile {
+            if !by_profile && self.view.frame.streak_color == STREAK_WHITE {
+                sum.w += 0.5 * (chord.high - chord.low) * chord.fraction;
+            } else if !by_profile {
                 sum += self.drops_chord(index, drop, &chord, ray) * chord.fraction;
             }
             let lines = if self.view.frame.atlas > 0 {
