@@ -1,4 +1,4 @@
-//! Thin streaks on a picture of 1280x720: put into lists of tiles and gathered by compute, as Downpour does, and blended as rectangles by
+//! Streaks on a picture of 1280x720: summed up along their paths by compute, as Downpour does, and blended as rectangles by
 //! the device's rasterizer. Both have all streaks in one color, so that what is compared is how they come onto the picture. The lines printed
 //! tell how much each covers, in drops' areas.
 
@@ -264,7 +264,7 @@ fn compared(c: &mut Criterion) {
         dispatches.extend(pass.medium());
         dispatches.extend(pass.drops());
         gpu.submit(&plate.dispatches(&pass)).expect("surroundings");
-        group.bench_function(BenchmarkId::new("lists of tiles", &name), |b| {
+        group.bench_function(BenchmarkId::new("sums by compute", &name), |b| {
             b.iter_custom(|iterations| {
                 let once = |_| gpu.time(&dispatches, REPEATS).expect("a time").wall;
                 (0..iterations).map(once).sum()
