@@ -59,7 +59,7 @@ fn drops_sum_across(drop: ScreenDrop, plumb: bool, line: u32, count: u32) -> vec
     return streak_pixels(min(a, b) - drop.reach, max(a, b) + drop.reach, count);
 }
 
-// The first and last line of pixels that a path may touch, by its first place and its way along the lines' order; (1, 0): there is none.
+// The first and last line of pixels that a path may touch; (1, 0): there is none.
 fn drops_sum_lines(drop: ScreenDrop, plumb: bool, count: u32) -> vec2u {
     let first = select(drop.first.x, drop.first.y, plumb);
     let last = first + select(drop.screen_delta.x, drop.screen_delta.y, plumb);
