@@ -1,15 +1,19 @@
 //! Surfaces that rain has made wet: energy, darkness, roofs, and what the film mirrors.
 
+use std::collections::BTreeMap;
+
 use downpour_math::ops::f64 as exact;
 use downpour_render::camera::Viewpoint;
 use downpour_render::light::LightSource;
+use downpour_scene::Budget;
 use downpour_trace::SceneWetness;
 use downpour_trace::builder::{MeshPart, SceneBuilder};
 use downpour_trace::data::{RenderFrame, SceneData};
+use downpour_trace::frame_scene::FrameScene;
 use downpour_trace::material::MaterialLook;
 use downpour_trace::scene::SceneView;
 use downpour_trace::sky_light::SkyLight;
-use downpour_weather::WetnessAt;
+use downpour_weather::{Weather, WetnessAt};
 use glam::{Affine3A, DVec3, Vec3};
 
 type Outcome<T = ()> = Result<T, Box<dyn std::error::Error>>;
@@ -103,35 +107,100 @@ fn outside(n: f64) -> f64 {
     sum / f64::from(steps)
 }
 
+/// Luminances of a wet surface of albedo `dry` under an even sky of 1, seen along its normal: porous through and through, and of paint.
+///
 /// J. Lekner and M. Dorf 1988: a surface that absorbs `a` of the light each time, under water of index n: of the light that goes in,
 /// `p = 1 - (1 - R) / n^2` is thrown back to it each time. It absorbs `(1 - R) a / (1 - p (1 - a))` of what falls on it, and the
 /// rest goes back, of which R has never been inside. The same light under an even sky, seen from above with the reflection at
 /// normal incidence `r` in the place of R on the way out.
-#[test]
-fn porous_ground_is_as_dark_as_lekner_and_dorf_say() -> Outcome {
+///
+/// Paint is not darker: what it has lost to the inside of its own surface it has lost when dry, too.
+fn lekner_and_dorf(dry: f64) -> [f64; 2] {
     let n = 1.333f64;
     let back = outside(n);
     let inside = 1.0 - (1.0 - back) / (n * n);
+    let absorbed = (1.0 - back) * (1.0 - dry) / (1.0 - inside * dry);
+    // All that comes out of the water, over all directions; and toward an eye above it, where it reflects less.
+    let diffuse = 1.0 - back - absorbed;
+    let of = |a: f64, b: f64| ((a - b) / (a + b)) * ((a - b) / (a + b));
+    // Gloss: of air and water, and of water and the base, whose index is 1.5; and the tops of the grains, of 15 % of the
+    // surface, which stand out of the film.
+    let both = of(n, 1.0) + (1.0 - of(n, 1.0)) * (1.0 - of(n, 1.0)) * of(1.5, n);
+    let gloss = 0.85 * both + 0.15 * of(1.5, 1.0);
+    [diffuse / (1.0 - back) * (1.0 - gloss) + gloss, dry * (1.0 - both) + both]
+}
+
+#[test]
+fn porous_ground_is_as_dark_as_lekner_and_dorf_say() -> Outcome {
     for dry in [0.05, 0.12, 0.2, 0.4, 0.7] {
-        let absorbed = (1.0 - back) * (1.0 - dry) / (1.0 - inside * dry);
-        // All that comes out of the water, over all directions; and toward an eye above it, where it reflects less.
-        let diffuse = 1.0 - back - absorbed;
-        let of = |a: f64, b: f64| ((a - b) / (a + b)) * ((a - b) / (a + b));
-        // Gloss: of air and water, and of water and the base, whose index is 1.5; and the tops of the grains, of 15 % of the
-        // surface, which stand out of the film.
-        let both = of(n, 1.0) + (1.0 - of(n, 1.0)) * (1.0 - of(n, 1.0)) * of(1.5, n);
-        let gloss = 0.85 * both + 0.15 * of(1.5, 1.0);
-        let expected = diffuse / (1.0 - back) * (1.0 - gloss) + gloss;
-        let mut scene = ground(look(dry as f32, 0.85, 1.0)).build(&SkyLight::uniform([1.0; 3]));
-        scene.set_wetness(Some(&SOAKED));
-        let found = mean(&picture(&scene, Vec3::Y * 3.0, Vec3::ZERO, 0.05, [24, 24], 24)?);
-        assert!((found / expected - 1.0).abs() < 0.03, "{dry}: {found}, {expected}");
-        // Paint is not darker: what it has lost to the inside of its own surface it has lost when dry, too.
-        let mut paint = ground(look(dry as f32, 0.85, 0.0)).build(&SkyLight::uniform([1.0; 3]));
-        paint.set_wetness(Some(&SOAKED));
-        let found = mean(&picture(&paint, Vec3::Y * 3.0, Vec3::ZERO, 0.05, [24, 24], 24)?);
-        let expected = dry * (1.0 - both) + both;
-        assert!((found / expected - 1.0).abs() < 0.03, "paint of {dry}: {found}, {expected}");
+        for (porosity, expected) in [1.0, 0.0].into_iter().zip(lekner_and_dorf(dry)) {
+            let mut scene = ground(look(dry as f32, 0.85, porosity)).build(&SkyLight::uniform([1.0; 3]));
+            scene.set_wetness(Some(&SOAKED));
+            let found = mean(&picture(&scene, Vec3::Y * 3.0, Vec3::ZERO, 0.05, [24, 24], 24)?);
+            assert!((found / expected - 1.0).abs() < 0.03, "{porosity}, {dry}: {found}, {expected}");
+        }
+    }
+    Ok(())
+}
+
+/// A wall that faces +X, of albedo 0.4, whose file gives it a porosity of 0.5.
+fn wall_files() -> BTreeMap<String, Vec<u8>> {
+    let json = r#"{
+        "asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}, "material": 0}]}],
+        "materials": [{
+            "name": "wall", "extras": {"porosity": 0.5},
+            "pbrMetallicRoughness": {"baseColorFactor": [0.4, 0.4, 0.4, 1], "metallicFactor": 0, "roughnessFactor": 0.85}
+        }],
+        "buffers": [{"byteLength": 144, "uri": "wall.bin"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 72}, {"buffer": 0, "byteOffset": 72, "byteLength": 72}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 6, "type": "VEC3", "min": [0, -60, -60], "max": [0, 60, 60]},
+            {"bufferView": 1, "componentType": 5126, "count": 6, "type": "VEC3"}
+        ]
+    }"#;
+    let [a, b, c, d] =
+        [(-60.0, 60.0), (-60.0, -60.0), (60.0, -60.0), (60.0, 60.0f32)].map(|(y, z)| [0.0, y, z]);
+    let numbers = [[a, b, c, a, c, d], [[1.0, 0.0, 0.0]; 6]];
+    let binary = numbers.as_flattened().as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
+    [("wall.gltf", json.as_bytes().to_vec()), ("wall.bin", binary)]
+        .map(|(name, it)| (name.to_owned(), it))
+        .into()
+}
+
+/// Luminance of that wall in a weather file whose wind drives the rain toward it, after `seconds`; the wall's own entry has `keys`.
+fn wall_of_a_file(keys: &str, porosity: Option<f64>, seconds: f64) -> Outcome<f64> {
+    let material =
+        porosity.map_or_else(String::new, |p| format!("[[material]]\nname = \"wall\"\nporosity = {p}\n"));
+    let text = format!(
+        "[sky]\ncolor = [1, 1, 1]\n[wetness]\nwetness = 1\n[[wind]]\nuniform = {{ speed_m_s = 10, towards_deg = 180 }}\n\
+         [camera]\nposition_m = [3, 0, 0]\nlook_at_m = [0, 0, 0]\nfov_deg = 3\n[output]\nsize = [24, 24]\n\
+         [[model]]\nfile = \"wall.gltf\"\n{keys}\n{material}"
+    );
+    let weather = Weather::parse("wall.toml", &text)?;
+    let loaded = downpour_weather::load(&weather, &wall_files(), &mut Budget::default())?;
+    let first = FrameScene::new(&weather, &loaded, 0.0)?;
+    let scene = if loaded.is_animated() { first.moved(&weather, &loaded, seconds)? } else { first };
+    let frame = RenderFrame::new(&scene.data, &scene.viewpoint, scene.size, 1, 24, 5)?;
+    Ok(mean(&SceneView { data: &scene.data, frame: &frame }.picture()))
+}
+
+/// `[[material]]` in a weather file replaces the porosity of a model: a porous wall is as dark as the law says, and one of paint keeps its
+/// albedo under the film. So it is for a wall that moves.
+#[test]
+fn a_wall_is_as_porous_as_its_weather_file_says() -> Outcome {
+    let [porous, paint] = lekner_and_dorf(0.4);
+    // It slides along itself.
+    let moves = "translation_m = [[0, [0, 0, 0]], [2, [0, 1, 3]]]";
+    for keys in ["", moves] {
+        let own = wall_of_a_file(keys, None, 1.0)?;
+        for (porosity, expected) in [(1.0, porous), (0.0, paint)] {
+            let found = wall_of_a_file(keys, Some(porosity), 1.0)?;
+            assert!((found / expected - 1.0).abs() < 0.03, "{keys} {porosity}: {found}, {expected}");
+            assert!((found - own).abs() > 0.1 * own, "{keys} {porosity}: {found}, as by its file: {own}");
+        }
+        // To give what the file gives changes nothing.
+        assert_eq!(wall_of_a_file(keys, Some(0.5), 1.0)?, own);
     }
     Ok(())
 }

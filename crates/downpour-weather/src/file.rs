@@ -11,6 +11,7 @@ use super::lamps::{Lamp, LampTable};
 use super::layers::LayersTable;
 use super::lightning::{FlashTable, Lightning, LightningTable, MAX_FLASHES};
 use super::look::LookTable;
+use super::materials::{self, MaterialTable};
 use super::models::{Model, ModelTable};
 use super::presets;
 use super::puddle::{self, Puddle, PuddleTable};
@@ -25,7 +26,7 @@ use super::streaks::StreaksTable;
 use super::wetness::{Wetness, WetnessTable};
 use super::wind::{self, GustsTable, TurbulenceTable, WindFieldTable, WindTable};
 use super::{
-    Camera, CameraPath, MAX_DRIPS, MAX_LIGHTS, MAX_MODELS, MAX_PANES, MAX_PUDDLES, Weather,
+    Camera, CameraPath, MAX_DRIPS, MAX_LIGHTS, MAX_MATERIALS, MAX_MODELS, MAX_PANES, MAX_PUDDLES, Weather,
     camera::CameraTable,
 };
 use downpour_scene::error::{SceneError, quoted};
@@ -47,6 +48,7 @@ pub(super) struct Tables {
     sun: Option<SunTable>,
     camera: CameraTable,
     model: Vec<ModelTable>,
+    material: Vec<MaterialTable>,
     light: Vec<LampTable>,
     flash: Vec<FlashTable>,
     lightning: LightningTable,
@@ -84,6 +86,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
     let tables = with_preset(own, text.len(), &positions)?;
     for (key, count, most) in [
         ("model", tables.model.len(), MAX_MODELS),
+        ("material", tables.material.len(), MAX_MATERIALS),
         ("light", tables.light.len(), MAX_LIGHTS),
         ("flash", tables.flash.len(), MAX_FLASHES),
         ("puddle", tables.puddle.len(), MAX_PUDDLES),
@@ -155,6 +158,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         sky,
         camera,
         models,
+        materials: materials::checked(&tables.material, &positions)?,
         lights,
         wind_box: tables.wind_field.checked(&wind, &positions)?,
         wind,

@@ -36,6 +36,8 @@ mod layers;
 mod lightning;
 mod load;
 mod look;
+mod material_names;
+mod materials;
 mod models;
 mod pane_map;
 mod pose;
@@ -78,6 +80,7 @@ pub use lightning::{
 };
 pub use load::{Loaded, Reloaded, Roots, lamps_at, load};
 pub use look::{Look, drop_exposure_s};
+pub use materials::MaterialOverride;
 pub use models::{Model, Repeat};
 pub use pane_map::PaneMap;
 pub use presets::PRESETS;
@@ -108,6 +111,9 @@ pub const MAX_EXPOSURE_S: f64 = 1.0;
 
 /// Maximum number of entries `[[model]]`.
 pub const MAX_MODELS: usize = 4096;
+
+/// Maximum number of entries `[[material]]`.
+pub const MAX_MATERIALS: usize = 1024;
 
 /// Maximum number of entries `[[light]]`.
 pub const MAX_LIGHTS: usize = 1024;
@@ -161,6 +167,8 @@ pub struct Weather {
     pub camera: Camera,
     /// Models, in the order of the file.
     pub models: Vec<Model>,
+    /// Overrides of the models' materials, in the order of the file.
+    pub materials: Vec<MaterialOverride>,
     /// Lamps, in the order of the file.
     pub lights: Vec<Lamp>,
     /// Lightning.
@@ -210,6 +218,7 @@ impl Default for Weather {
             sun: SunSource::None,
             camera: Camera::default(),
             models: Vec::new(),
+            materials: Vec::new(),
             lights: Vec::new(),
             lightning: Lightning::default(),
             wind: Wind::default(),

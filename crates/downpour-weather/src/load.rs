@@ -1,5 +1,7 @@
 //! All files of a weather, as one scene, one sky and one sun.
 
+use super::material_names::MaterialNames;
+use super::materials;
 use super::pane_map::read_pane_maps;
 use super::puddle::{MAX_ALL_PUDDLE_CELLS, MAX_PUDDLE_CELLS, PuddleShape};
 use super::{Lamp, Model, Puddle, SkySource, SunSource, Weather};
@@ -96,7 +98,7 @@ impl Loaded {
 /// Parts of a weather's files that are not those of another one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Reloaded {
-    /// The models, and with them all else.
+    /// The models or their materials, and with them all else.
     pub models: bool,
     /// Sky and sun.
     pub sky: bool,
@@ -107,6 +109,8 @@ impl Reloaded {
     fn between(before: &Weather, weather: &Weather, is_animated: bool) -> Self {
         // Lamps are nodes of a scene that moves.
         let models = before.models != weather.models
+            // What a material was without its override is in its file only.
+            || before.materials != weather.materials
             || !before.keys.has_models_of(&weather.keys)
             || (is_animated && before.lights != weather.lights);
         let scales = before.keys.has_sky() || weather.keys.has_sky();
@@ -169,7 +173,7 @@ impl Files for Beside<'_> {
 ///
 /// # Errors
 /// [`SceneError`] with the name of the file: it cannot be read, is not supported, or is too large; or a
-/// model has no animation of the name in the weather.
+/// model has no animation of the name in the weather, or no model a material of a name in it.
 ///
 /// ```no_run
 /// use downpour_scene::Budget;
@@ -195,6 +199,7 @@ pub fn load(weather: &Weather, files: &dyn Files, budget: &mut Budget) -> Result
     }
     let roots_of = |model: usize| scene.roots.get(roots.get(model)?.clone()).map(<[usize]>::to_vec);
     let moving = weather.keys.models().filter_map(|model| Some((model, roots_of(model)?))).collect();
+    materials::apply(&weather.materials, &mut scene).map_err(|error| error.in_file(&weather.name))?;
     check_panes(weather, &scene)?;
     for lamp in &weather.lights {
         remaining.take_nodes(1, "light").map_err(|error| error.in_file(&weather.name))?;
@@ -210,15 +215,19 @@ pub fn load(weather: &Weather, files: &dyn Files, budget: &mut Budget) -> Result
     Ok(Loaded { scene, animations, moving, sky, sun, unscaled, masks, drop_model, warnings })
 }
 
-/// Triangles that drops are drawn as: all of them, or an error.
+/// Checks that the models have the materials that panes are of.
 fn check_panes(weather: &Weather, scene: &Scene) -> Result<(), SceneError> {
-    let names = scene.materials.iter().map(|material| material.name.as_str());
+    if weather.panes.is_empty() {
+        return Ok(());
+    }
+    let names = MaterialNames::of(scene);
     for (index, pane) in weather.panes.iter().enumerate() {
-        pane.check_material(index, names.clone()).map_err(|error| error.in_file(&weather.name))?;
+        pane.check_material(index, &names).map_err(|error| error.in_file(&weather.name))?;
     }
     Ok(())
 }
 
+/// Triangles that drops are drawn as: all of them, or an error.
 fn drop_model(
     weather: &Weather,
     files: &dyn Files,
@@ -554,6 +563,6 @@ fn single(transform: &DAffine3) -> Affine3A {
     clippy::cast_possible_truncation,
     reason = "rounding is meant, and what is beyond the range is at its end"
 )]
-fn narrowed(value: f64) -> f32 {
+pub(super) fn narrowed(value: f64) -> f32 {
     value.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32
 }

@@ -1,8 +1,9 @@
 //! `[[pane]]`: glass of the scene on which rain is seen.
 
 use super::fault::Positions;
+use super::material_names::{MaterialNames, check_length};
 use super::quantity::{ElevationDeg, Exactly, In, PositionM, SheetDropMm, SheetHeightM, SheetM, TurnDeg};
-use downpour_scene::error::{SceneError, quoted};
+use downpour_scene::error::SceneError;
 use glam::DVec3;
 use serde::Deserialize;
 
@@ -11,9 +12,6 @@ const HEIGHT_M: f64 = 3.0;
 
 /// Default diameter of the largest drop that stays on glass, m.
 const MAX_DROP_M: f64 = 5.0e-3;
-
-/// Maximum length of the name of a material, in bytes.
-const MAX_NAME: usize = 256;
 
 /// Glass of the scene on which rain is seen.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,9 +57,8 @@ impl ScenePane {
         positions: &Positions<'_>,
     ) -> Result<Self, SceneError> {
         let at = |name: &str| format!("pane[{index}].{name}");
-        if let Some(name) = table.material.as_ref().filter(|name| name.is_empty() || name.len() > MAX_NAME) {
-            let allowed = format!("a name of 1 to {MAX_NAME} bytes");
-            return Err(positions.bad(&at("material"), format!("{} bytes", name.len()), allowed));
+        if let Some(name) = &table.material {
+            check_length(name, &at("material"), positions)?;
         }
         let rectangle = match (table.position_m, table.size_m) {
             (Some(center), Some(size)) => Some(SceneRectangle {
@@ -97,24 +94,9 @@ impl ScenePane {
     }
 
     /// Checks that its material is one of `names`.
-    pub(super) fn check_material<'a>(
-        &self,
-        index: usize,
-        names: impl Iterator<Item = &'a str> + Clone,
-    ) -> Result<(), SceneError> {
-        let Some(material) = &self.material else { return Ok(()) };
-        if names.clone().any(|name| name == material) {
-            return Ok(());
-        }
-        let mut known: Vec<&str> = names.filter(|name| !name.is_empty()).collect();
-        known.sort_unstable();
-        known.dedup();
-        known.truncate(20);
-        let names: Vec<String> = known.into_iter().map(quoted).collect();
-        let allowed =
-            if names.is_empty() { "a model with named materials".to_owned() } else { names.join(", ") };
-        let found = format!("{}, which no model has", quoted(material));
-        Err(SceneError::bad(format!("pane[{index}].material"), found, allowed))
+    pub(super) fn check_material(&self, index: usize, names: &MaterialNames<'_>) -> Result<(), SceneError> {
+        let name = self.material.as_ref();
+        name.map_or(Ok(()), |name| names.check(name, &format!("pane[{index}].material")))
     }
 }
 

@@ -1,9 +1,11 @@
 //! Suggestions for misspelled words.
 
+/// Maximum length of a wrong word that is compared, in bytes: longer ones are near no key, and the work grows with it.
+const MAX_COMPARED: usize = 64;
+
 /// Known word nearest to a wrong one: the same quantity in another unit, or a few typing errors away.
 pub(super) fn nearest<'a>(wrong: &str, known: &[&'a str]) -> Option<&'a str> {
-    // Longer words cannot be near any key, and the table below grows with the square.
-    if wrong.len() > 64 {
+    if wrong.len() > MAX_COMPARED {
         return None;
     }
     let first = |word: &str| word.split(['_', '-']).next().unwrap_or_default().to_ascii_lowercase();
@@ -16,6 +18,14 @@ pub(super) fn nearest<'a>(wrong: &str, known: &[&'a str]) -> Option<&'a str> {
     }
     let (distance, word) = closest(&mut known.iter())?;
     (distance <= wrong.chars().count().max(4) / 3).then_some(word)
+}
+
+/// Sorts words by their distance from a wrong one; words as far away as each other, and all words where the wrong one is too long to
+/// compare, keep their order.
+pub(super) fn nearest_first(wrong: &str, known: &mut [&str]) {
+    if wrong.len() <= MAX_COMPARED {
+        known.sort_by_cached_key(|word| distance(wrong, word));
+    }
 }
 
 /// Number of letters to insert, delete, change, or swap with the next (optimal string alignment).
@@ -84,5 +94,17 @@ mod tests {
         for wrong in ["wind", "", "xyzzy", &"seed".repeat(100_000)] {
             assert_eq!(nearest(wrong, &keys), None);
         }
+    }
+
+    #[test]
+    fn the_nearest_words_come_first() {
+        let words = ["bark", "brick", "brick_pale", "roof"];
+        let sorted = |wrong: &str| {
+            let mut words = words;
+            nearest_first(wrong, &mut words);
+            words
+        };
+        assert_eq!(sorted("bricks"), ["brick", "bark", "brick_pale", "roof"]);
+        assert_eq!(sorted(&"roof".repeat(100_000)), words);
     }
 }

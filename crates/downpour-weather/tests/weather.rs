@@ -485,7 +485,7 @@ fn t11_keys_are_known_and_stand_once() {
     );
     says(
         "[rian]\nrate_mm_h = 5",
-        "line 1, column 2: rian: unknown key \"rian\", perhaps rain; allowed: preset, rain, layers, sky, sun, camera, model, light, \
+        "line 1, column 2: rian: unknown key \"rian\", perhaps rain; allowed: preset, rain, layers, sky, sun, camera, model, material, light, \
          flash, lightning, wind, gusts, turbulence, wind_field, streaks, glass, fog, glow, look, puddle, ripples, wetness, pane, splashes, spray, drips, drip, output",
     );
     refused("[camera]\nfov_rad = 1", 2, "unknown key \"fov_rad\", perhaps fov_deg;");

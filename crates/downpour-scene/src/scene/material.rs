@@ -51,7 +51,8 @@ pub struct Material {
     pub diffuse_transmission_color_texture: Option<TextureRef>,
     /// Index of refraction; 1 or more, or 0 for a surface that reflects all light as the extension allows.
     pub ior: f32,
-    /// Fraction that soaks up rain, in [0, 1]: `porosity` of the material's `extras`. `None`: by roughness and metalness.
+    /// Fraction that soaks up rain and darkens, in [0, 1]: `porosity` of the material's `extras`, or what a weather file gives in its place.
+    /// `None`: by roughness and metalness.
     pub porosity: Option<f32>,
 }
 
