@@ -10,6 +10,7 @@
 //! - [`ComputeKernel`], [`Dispatch`]: pipelines from `downpour-shaders`, checked against the device's limits;
 //! - [`BufferPool`]: buffers that stay from frame to frame;
 //! - [`Gpu::read`]: readback, which detects loss, hangs and late errors;
+//! - [`ReadbackRing`]: small readbacks that nothing waits for; [`LossProbe`]: loss of a caller's device, at once;
 //! - [`timing`]: time of whole passes, by timestamps where the device has them.
 //!
 //! ```no_run
@@ -27,10 +28,12 @@ mod context;
 mod drivers;
 mod error;
 mod kernel;
+mod loss_probe;
 mod made_once;
 mod passes;
 mod pool;
 mod readback;
+mod readback_ring;
 mod sequence;
 pub mod timing;
 mod workgroups;
@@ -39,10 +42,12 @@ pub use adapter::{AdapterChoice, AdapterDescription};
 pub use context::{Gpu, GpuOptions, LimitSet};
 pub use error::GpuError;
 pub use kernel::{ComputeKernel, Dispatch};
+pub use loss_probe::LossProbe;
 pub use made_once::made_once;
 pub use passes::{FramePasses, FrameQueries, FrameTimes, TICKS};
 pub use pool::{BufferPool, BufferSource};
 pub use readback::{Readback, ReadbackPool};
+pub use readback_ring::ReadbackRing;
 pub use sequence::{KernelSequence, SequencePass};
 pub use wgpu;
 pub use workgroups::{invocation_index, workgroups, workgroups_for};

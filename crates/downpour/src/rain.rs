@@ -3,13 +3,15 @@
 mod error;
 mod obstacles;
 mod settings;
+mod stats;
 mod textures;
+mod views;
 
 use downpour_drop::air::Air;
 use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution};
 use downpour_drop::oscillation::{Amplitudes, Fluids};
 use downpour_drop::spray::Spray;
-use downpour_gpu::{BufferPool, Gpu, wgpu};
+use downpour_gpu::{BufferPool, Gpu, LossProbe, ReadbackRing, wgpu};
 use downpour_render::camera::{EyeMotion, Viewpoint};
 use downpour_render::gpu::{FallingOnGpu, HostPipeline, PlateOnGpu, RainOnGpu, RainPipeline};
 use downpour_render::host::{HostBlendFrame, HostEnvironmentFrame, HostPlateFrame};
@@ -33,11 +35,13 @@ use glam::DVec3;
 
 use crate::shower::{drops_among, fall_speed, looking, splashes, spray};
 use obstacles::scene_of;
+use views::TriedViews;
 
 pub use downpour_render::host::DepthRange;
 pub use error::RainError;
 pub use obstacles::{AlphaHoles, ObstacleMesh};
 pub use settings::RainSettings;
+pub use stats::{RainCounts, RainStats};
 pub use textures::{HostSky, PlateTextures};
 
 /// View of a frame: a perspective camera in the host's world (right-handed, +Y up, meters), and its exposure.
@@ -53,37 +57,19 @@ pub struct RainView {
     pub shutter_s: f64,
 }
 
-/// Numbers of a frame that was recorded.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[non_exhaustive]
-pub struct RainStats {
-    /// Drops that there is room for to be drawn one by one: a quarter more than are expected. How many there are, the device alone
-    /// knows ([`Rain::drops`] counts them on the CPU).
-    pub room: u32,
-    /// Columns of air that are searched for them.
-    pub columns: u32,
-    /// Least diameter of these on the picture, pixels; smaller ones are an extinction and a light of their own.
-    pub least_pixels: f64,
-    /// Buffers that were created so far, in all frames: after the first frame of a size there are hardly any more.
-    pub buffers_made: u64,
-    /// Bytes that were written to the device for this frame.
-    pub bytes_uploaded: u64,
-    /// True if the frame has splashes; false without obstacles, or where more drops hit them than the device looks for.
-    pub has_splashes: bool,
-    /// True if the frame has droplets that rebounded; false as for splashes.
-    pub has_droplets: bool,
-}
-
 /// Rain for a host application, drawn on the host's device.
 ///
 /// [`Rain::render`] reads the color and depth textures of a frame, records compute passes and one render pass in the host's
 /// command encoder, and blends the rain into the color texture: refracted and lit drops and streaks, hidden by what the depth
-/// texture shows, and the extinction and the light of all smaller drops. It neither waits for the device nor reads from it.
+/// texture shows, and the extinction and the light of all smaller drops. It never waits for the device.
 ///
 /// The device finds the drops, the same for the same seed and time as on the CPU, sorts them into tiles and draws them; the CPU
 /// writes the frame's numbers, some kilobytes, and in gusts above obstacles the wind of the last minutes, some hundred. Buffers stay
 /// from frame to frame. Submit the encoder before the next call of `render` of the same `Rain`: its buffers are written anew then.
 /// Two views in one submission take two `Rain`s.
+///
+/// The numbers of drops that the device has found come back by themselves ([`RainStats::counts`]): the host need not poll the device,
+/// and no frame waits for them or depends on them.
 #[derive(Debug)]
 pub struct Rain {
     gpu: Gpu,
@@ -94,6 +80,8 @@ pub struct Rain {
     field_on_gpu: FieldOnGpu,
     /// Drops whose lists the device can bind.
     most_drops: u32,
+    /// Drops that a list may have room for: as many, but in tests.
+    max_room: u32,
     /// Speed of a drop of the effective diameter, m/s.
     fall_speed: f64,
     /// The drops that are not drawn one by one, for the limits of the last frame.
@@ -117,28 +105,47 @@ pub struct Rain {
     rains: RainPipeline,
     host: HostPipeline,
     pool: BufferPool,
+    /// Tells the loss of the device.
+    probe: LossProbe,
+    /// Views that were tried.
+    views: TriedViews,
+    /// Frames that were recorded.
+    frames: u64,
+    /// Numbers of the drops of the last frames on their way to the host, each with the frame's number and its room.
+    counting: ReadbackRing<(u64, u32)>,
+    /// The newest of those that have arrived.
+    counts: Option<RainCounts>,
 }
+
+/// Frames whose numbers of drops may be on their way at once.
+const COUNTED_FRAMES: usize = 3;
+
+/// Bytes of the numbers of drops of a frame ([`DropListOnGpu::counts`](downpour_sim::gpu::DropListOnGpu::counts)).
+const COUNT_BYTES: u64 = 12;
 
 impl Rain {
     /// Creates the rain: traces the masks of its drops and compiles the pipelines, which takes some seconds. The device needs no
     /// feature and no more than WebGPU's default limits; its callbacks stay the host's.
     ///
     /// # Errors
-    /// [`RainError`]: a setting outside its range, or what the GPU says.
+    /// [`RainError`]: a setting outside its range, or what the GPU says: lost, out of memory, or with limits below WebGPU's.
     pub fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         settings: RainSettings,
     ) -> Result<Self, RainError> {
         let gpu = Gpu::on_device(device.clone(), queue.clone());
+        let probe = LossProbe::new(&gpu)?;
         let Falling { sizes, field, splashes, spray } = Falling::of(&settings)?;
         let masks = DropMasks::in_air(&settings.air)?;
         let masks = if splashes.is_some() { masks.with_splashes_in_air(&settings.air)? } else { masks };
         let rains = RainPipeline::new(&gpu)?;
         let fields = FieldPipeline::new(&gpu)?;
         let scene = scene_of(&[])?;
+        let most_drops = rains.most_drops();
         Ok(Self {
-            most_drops: rains.most_drops(),
+            most_drops,
+            max_room: most_drops,
             fall_speed: fall_speed(&sizes),
             medium: None,
             frequencies: rains.frequencies(&Fluids::in_air(&settings.air))?,
@@ -148,6 +155,11 @@ impl Rain {
             scene_on_gpu: SceneOnGpu::new(&gpu, &scene)?,
             host: HostPipeline::new(&gpu)?,
             pool: BufferPool::new(&gpu),
+            probe,
+            views: TriedViews::default(),
+            frames: 0,
+            counting: ReadbackRing::new(&gpu, COUNT_BYTES, COUNTED_FRAMES)?,
+            counts: None,
             gpu,
             masks_air: settings.air,
             settings,
@@ -169,11 +181,19 @@ impl Rain {
         &self.settings
     }
 
+    /// Gives the list of drops less room than a frame may need, so that tests see drops that have none.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn with_max_room(self, max_room: u32) -> Self {
+        Self { max_room, ..self }
+    }
+
     /// Changes the settings from the next frame on. The refractive index of the drops stays that of the air in [`Rain::new`].
     ///
     /// # Errors
-    /// [`RainError`] for a setting outside its range; the old settings stay.
+    /// [`RainError`] for a setting outside its range, or what the GPU says; the old settings stay.
     pub fn set_settings(&mut self, settings: RainSettings) -> Result<(), RainError> {
+        self.probe.check(&self.gpu)?;
         let Falling { sizes, field, splashes, spray } = Falling::of(&settings)?;
         if splashes.is_some() && !self.masks.has_splashes() {
             let masks = self.masks.clone().with_splashes_in_air(&self.masks_air)?;
@@ -205,6 +225,7 @@ impl Rain {
     /// an alpha texture that does not fit, [`RainError::OutOfRange`] for its cutoff, or what the GPU says; the old obstacles stay.
     pub fn set_obstacle_meshes(&mut self, meshes: &[ObstacleMesh<'_>]) -> Result<(), RainError> {
         let scene = scene_of(meshes)?;
+        self.probe.check(&self.gpu)?;
         self.scene_on_gpu = SceneOnGpu::new(&self.gpu, &scene)?;
         self.has_obstacles = !scene.triangles.is_empty();
         self.has_holes = self.has_obstacles && meshes.iter().any(|mesh| mesh.holes.is_some());
@@ -243,7 +264,7 @@ impl Rain {
             return Ok((None, None));
         }
         let (field, obstacles) = (&self.field, self.obstacles());
-        let least_pixels = field.resolved(view, time_s, self.most_drops)?.least_pixels;
+        let least_pixels = field.resolved(view, time_s, self.max_room)?.least_pixels;
         let fits = |splashes: &&SplashOptions| splashes.fits_device(field, view, time_s, &obstacles);
         let bounce = Some(&self.settings.bounce).filter(|bounce| {
             bounce.fraction > 0.0 && bounce.fits_device(field, view, least_pixels, time_s, &obstacles)
@@ -254,8 +275,35 @@ impl Rain {
     /// Records the rain of a frame: it is blended into the color texture when `encoder` is submitted.
     ///
     /// # Errors
-    /// [`RainError`]: a view outside its ranges, textures that do not fit, or what the GPU says. Then nothing is blended.
+    /// [`RainError`]: a view outside its ranges, textures or views of them that do not fit, or what the GPU says, such as
+    /// [`GpuError::Lost`](downpour_gpu::GpuError::Lost). Then nothing is blended, and later frames are as if there had been no such call.
     pub fn render(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        view: &RainView,
+        textures: &PlateTextures<'_>,
+    ) -> Result<RainStats, RainError> {
+        self.probe.check(&self.gpu)?;
+        let gpu = self.gpu.clone();
+        // What wgpu says on the way, of a device that is lost or full by now, is an error here and not one of the host.
+        gpu.create("the rain of a frame", 0, |_| {
+            self.take_counts()?;
+            self.record(encoder, view, textures)
+        })?
+    }
+
+    /// Takes the numbers of drops that have arrived.
+    fn take_counts(&mut self) -> Result<(), RainError> {
+        let newest = &mut self.counts;
+        self.counting.take(&self.gpu, |(frame, room), bytes| {
+            if newest.is_none_or(|counts| counts.frame < frame) {
+                *newest = Some(RainCounts::new(frame, room, bytes));
+            }
+        })?;
+        Ok(())
+    }
+
+    fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         view: &RainView,
@@ -265,6 +313,8 @@ impl Rain {
         settings::check_view(view)?;
         let camera = view.camera.camera(size, 0)?;
         let seen = self.view(view, size)?;
+        let pipeline = self.host.blend(textures.color.texture().format())?;
+        self.views.check(&self.gpu, &pipeline, textures, size)?;
         self.set_lights(textures.lights)?;
         let eye = view.camera.eye.as_dvec3();
         self.pool.begin_frame();
@@ -285,7 +335,7 @@ impl Rain {
         let search = FieldSearch {
             view: &seen,
             time_s: view.time_s,
-            max_room: self.most_drops,
+            max_room: self.max_room,
             pane: None,
             known: &[],
             splashes: splashes.as_ref(),
@@ -335,14 +385,23 @@ impl Rain {
         }
         let blend = HostBlendFrame { width: size[0], scale: 1.0 / textures.radiance_scale, unused: [0; 2] };
         self.host.encode_blend(pool, encoder, textures.color, pass.layer_buffer(), &blend)?;
+        self.frames += 1;
+        let (frame, room) = (self.frames, found.list().room());
+        // While none is free, frames go without.
+        self.counting.record(encoder, found.list().counts(), (frame, room));
         Ok(RainStats {
-            room: found.list().room(),
+            frame,
+            drops_asked: self.settings.max_drops,
+            max_drops: seen.max_drops,
+            room,
             columns: found.columns(),
+            least_pixels_asked: seen.least_pixels,
             least_pixels: found.resolved().least_pixels,
             buffers_made: pool.made(),
             bytes_uploaded: pool.written(),
             has_splashes: splashes.is_some(),
             has_droplets: bounce.is_some(),
+            counts: self.counts,
         })
     }
 

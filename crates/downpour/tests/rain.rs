@@ -3,196 +3,24 @@
 #![cfg(feature = "wgpu")]
 
 mod device;
+mod host;
 
 use downpour::gpu::{Gpu, LimitSet, wgpu};
-use downpour::math::packing::packing_unpack_half;
 use downpour::rain::{
-    AlphaHoles, DepthRange, ObstacleMesh, PlateTextures, Rain, RainError, RainSettings, RainView,
+    AlphaHoles, DepthRange, HostSky, ObstacleMesh, PlateTextures, Rain, RainError, RainSettings, RainView,
 };
 use downpour::render::camera::{EyeMotion, Viewpoint};
 use downpour::render::light::LightSource;
 use downpour::trace::data::SceneData;
 use downpour::weather::{Look, Spray};
 use glam::Vec3;
+use host::{Host, NEAR_M, SKY, WALL, ground, mean, settings, view};
 
 const SIZE: [u32; 2] = [160, 90];
-const NEAR_M: f32 = 0.1;
 
 /// A device with WebGPU's default limits; `None` if tests on a GPU were declined.
 fn device() -> Option<Gpu> {
     device::gpu(LimitSet::WebGpuDefault)
-}
-
-/// A frame of a host: a gray sky above, a wall some meters away below.
-struct Host {
-    gpu: Gpu,
-    color: wgpu::Texture,
-    depth: wgpu::Texture,
-}
-
-const SKY: f64 = 0.5;
-const WALL: f64 = 0.0625;
-
-impl Host {
-    fn new(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat) -> Self {
-        let texture = |format, usage| {
-            gpu.device().create_texture(&wgpu::TextureDescriptor {
-                label: None,
-                size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: usage | wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
-            })
-        };
-        Self {
-            gpu: gpu.clone(),
-            color: texture(format, wgpu::TextureUsages::COPY_SRC),
-            depth: texture(wgpu::TextureFormat::Depth32Float, wgpu::TextureUsages::empty()),
-        }
-    }
-
-    /// Draws the frame without rain: the wall `wall_m` away (infinite for none), from half the height downwards.
-    fn draw(&self, encoder: &mut wgpu::CommandEncoder, wall_m: f32) {
-        let source = "
-            @vertex fn corner(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
-                return vec4f(f32((i & 1u) << 2u) - 1.0, 1.0 - f32((i & 2u) << 1u), 0.0, 1.0);
-            }
-            @fragment fn wall() -> @location(0) vec4f { return vec4f(0.0625, 0.0625, 0.0625, 1.0); }";
-        let device = self.gpu.device();
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: None,
-            source: wgpu::ShaderSource::Wgsl(source.into()),
-        });
-        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: None,
-            layout: None,
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: None,
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: wgpu::TextureFormat::Depth32Float,
-                depth_write_enabled: Some(true),
-                depth_compare: Some(wgpu::CompareFunction::Always),
-                stencil: wgpu::StencilState::default(),
-                bias: wgpu::DepthBiasState::default(),
-            }),
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: None,
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[Some(self.color.format().into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
-        let (color, depth) =
-            (self.color.create_view(&Default::default()), self.depth.create_view(&Default::default()));
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &color,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color { r: SKY, g: SKY, b: SKY, a: 1.0 }),
-                    store: wgpu::StoreOp::Store,
-                },
-            })],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &depth,
-                depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(0.0),
-                    store: wgpu::StoreOp::Store,
-                }),
-                stencil_ops: None,
-            }),
-            ..Default::default()
-        });
-        if wall_m.is_finite() {
-            let [width, height] = [self.color.width(), self.color.height()];
-            let value = NEAR_M / wall_m;
-            pass.set_pipeline(&pipeline);
-            pass.set_viewport(0.0, 0.0, width as f32, height as f32, value, value);
-            pass.set_scissor_rect(0, height / 2, width, height - height / 2);
-            pass.draw(0..3, 0..1);
-        }
-    }
-
-    /// The color texture, rows from the top, as linear numbers; `Rgba16Float` only.
-    fn read(&self) -> Vec<[f32; 4]> {
-        let (width, height) = (self.color.width(), self.color.height());
-        let row = (width * 8).next_multiple_of(256);
-        let buffer = self
-            .gpu
-            .empty_buffer("picture", u64::from(row) * u64::from(height), wgpu::BufferUsages::empty())
-            .expect("it is possible");
-        let mut encoder = self.gpu.device().create_command_encoder(&Default::default());
-        encoder.copy_texture_to_buffer(
-            self.color.as_image_copy(),
-            wgpu::TexelCopyBufferInfo {
-                buffer: &buffer,
-                layout: wgpu::TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some(row),
-                    rows_per_image: Some(height),
-                },
-            },
-            self.color.size(),
-        );
-        self.gpu.queue().submit([encoder.finish()]);
-        let words: Vec<u16> = self.gpu.read(&buffer).expect("it is possible");
-        words
-            .chunks(row as usize / 2)
-            .flat_map(|line| line[..width as usize * 4].chunks(4))
-            .map(|pixel| {
-                let [[r, g], [b, a]] =
-                    [0, 2].map(|k| packing_unpack_half(u32::from(pixel[k]) | u32::from(pixel[k + 1]) << 16));
-                [r, g, b, a]
-            })
-            .collect()
-    }
-
-    /// A frame with rain.
-    fn rain(
-        &self,
-        rain: &mut Rain,
-        view: &RainView,
-        wall_m: f32,
-        lights: &[LightSource],
-    ) -> Result<Vec<[f32; 4]>, RainError> {
-        let mut encoder = self.gpu.device().create_command_encoder(&Default::default());
-        self.draw(&mut encoder, wall_m);
-        let (color, depth) =
-            (self.color.create_view(&Default::default()), self.depth.create_view(&Default::default()));
-        let textures = PlateTextures { lights, ..PlateTextures::new(&color, &depth, NEAR_M) };
-        rain.render(&mut encoder, view, &textures)?;
-        self.gpu.queue().submit([encoder.finish()]);
-        Ok(self.read())
-    }
-}
-
-fn view() -> RainView {
-    RainView {
-        camera: Viewpoint { eye: Vec3::new(0.5, 1.6, -2.0), forward: Vec3::NEG_Z, up: Vec3::Y, fov_y: 0.8 },
-        motion: EyeMotion::default(),
-        time_s: 3.0,
-        shutter_s: 1.0 / 60.0,
-    }
-}
-
-fn settings() -> RainSettings {
-    RainSettings { rate_mm_h: 500.0, seed: 5, max_drops: 3000, ..RainSettings::default() }
-}
-
-fn mean(pixels: &[[f32; 4]]) -> f32 {
-    pixels.iter().map(|p| p[0] + p[1] + p[2]).sum::<f32>() / (3 * pixels.len()) as f32
 }
 
 /// The same passes on the CPU, from colors, depths and obstacles that the test knows.
@@ -204,17 +32,28 @@ fn expected(rain: &Rain, view: &RainView, wall_m: f32, obstacles: &[[[f32; 3]; 3
     let corners: Vec<[f32; 3]> = obstacles.iter().flatten().copied().collect();
     let indices: Vec<u32> = (0..corners.len() as u32).collect();
     builder.add_mesh(&MeshPart::plain(&corners, &indices, 0), &glam::Affine3A::IDENTITY);
-    expected_among(rain, view, wall_m, &builder.build(&SkyLight::uniform([0.0; 3])))
+    expected_among(rain, view, wall_m, &builder.build(&SkyLight::uniform([0.0; 3])), None)
 }
 
-/// The same among the obstacles of a scene.
-fn expected_among(rain: &Rain, view: &RainView, wall_m: f32, scene: &SceneData) -> Vec<[f32; 4]> {
+/// A sky map: columns and rows, texels, and radiance of the color 1.
+type Sky<'a> = ([u32; 2], &'a [[f32; 4]], f32);
+
+/// The same among the obstacles of a scene, under a sky map.
+fn expected_among(
+    rain: &Rain,
+    view: &RainView,
+    wall_m: f32,
+    scene: &SceneData,
+    sky: Option<Sky<'_>>,
+) -> Vec<[f32; 4]> {
     use downpour::drop::oscillation::{Amplitudes, Fluids};
     use downpour::drop::splash::SplashLaw;
     use downpour::drop::spray::Spray;
     use downpour::render::host::{HostEnvironment, HostEnvironmentFrame, HostPlateFrame, host_plate};
     use downpour::render::picture::compose_pixel;
-    use downpour::render::rain::{DropMasks, EnvironmentMap, Exposure, MediumOptions, Rain as PictureRain};
+    use downpour::render::rain::{
+        DropMasks, EnvironmentMap, Exposure, MediumGrain, MediumOptions, Rain as PictureRain,
+    };
     use downpour::render::rain::{RainMedium, RainOptions};
     use downpour::render::{Plate, rain_layer};
     use downpour::trace::{data::RenderFrame, scene::SceneView};
@@ -227,7 +66,11 @@ fn expected_among(rain: &Rain, view: &RainView, wall_m: f32, scene: &SceneData) 
     let visible = rain.drops(view, SIZE).expect("it is possible");
     let speed = downpour::drop::fall_speed::TerminalSpeed::new(sizes.options().fall_speed, &settings.air);
     let fall = speed.at(sizes.effective_diameter()).expect("it is possible");
-    let medium = MediumOptions { velocity: Vec3::new(0.0, -fall as f32, 0.0), ..MediumOptions::default() };
+    let medium = MediumOptions {
+        velocity: Vec3::new(0.0, -fall as f32, 0.0),
+        grain: MediumGrain::Streaks,
+        ..MediumOptions::default()
+    };
     let options = RainOptions {
         medium: RainMedium::new(&sizes, &visible.resolved, &masks, &medium).expect("it is possible"),
         exposure: Exposure {
@@ -258,8 +101,9 @@ fn expected_among(rain: &Rain, view: &RainView, wall_m: f32, scene: &SceneData) 
         (0..SIZE[0] * SIZE[1]).map(|i| if is_wall(i) { NEAR_M / wall_m } else { 0.0 }).collect();
     let pixels = host_plate(&frame, &color, &depth);
     let picture = PictureRain::new(&camera, view.camera.eye.as_dvec3(), &visible.drops, &masks, &options);
-    let map = HostEnvironmentFrame::new(&camera, picture.environment.size, None);
-    let finest = HostEnvironment { frame: &map, plate: &pixels, sky: ([1, 1], &[[0.0; 4]]) }.map();
+    let map = HostEnvironmentFrame::new(&camera, picture.environment.size, sky.map(|(.., scale)| scale));
+    let sky = sky.map_or(([1, 1], &[[0.0; 4]][..]), |(size, texels, _)| (size, texels));
+    let finest = HostEnvironment { frame: &map, plate: &pixels, sky }.map();
     let environment = EnvironmentMap::new(&picture.environment, finest);
     let of_scene = RenderFrame::new(scene, &view.camera, SIZE, 1, 0, 0).expect("it is possible");
     let lighting = SceneView { data: scene, frame: &of_scene };
@@ -292,6 +136,58 @@ fn a_frame_is_that_of_the_cpu() {
     let other = host.rain(&mut rain, &RainView { time_s: 3.5, ..view }, wall_m, &[]).unwrap();
     let differ = other.iter().zip(&expected).filter(|(a, b)| (a[0] - b[0]).abs() > 4.0e-3).count();
     assert!(differ > pixels / 50, "{differ} of {pixels} pixels differ at another time");
+}
+
+/// Drops show the host's sky map where they refract or reflect what is beyond the picture, as on the CPU.
+#[test]
+fn drops_show_the_sky_map() {
+    use downpour::trace::{builder::SceneBuilder, sky_light::SkyLight};
+
+    let Some(gpu) = device() else { return };
+    let mut rain = Rain::new(gpu.device(), gpu.queue(), settings()).unwrap();
+    let host = Host::new(&gpu, SIZE, wgpu::TextureFormat::Rgba16Float);
+    // Bright and red to the right of the camera, blue to its left, dark below. Odd numbers keep the edges of texels off the axes, where
+    // either side is right.
+    let ([columns, rows], scale) = ([7u32, 5u32], 4.0);
+    let bytes: Vec<[u8; 4]> = (0..columns * rows)
+        .map(|i| match (i % columns, i / columns) {
+            (_, 4) => [10, 10, 10, 255],
+            (2..=4, _) => [240, 60, 30, 255],
+            _ => [20, 40, 250, 255],
+        })
+        .collect();
+    let extent = wgpu::Extent3d { width: columns, height: rows, depth_or_array_layers: 1 };
+    let map = gpu.device().create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: extent,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba8Unorm,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    gpu.queue().write_texture(
+        map.as_image_copy(),
+        bytes.as_flattened(),
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * columns), rows_per_image: None },
+        extent,
+    );
+    let map = map.create_view(&wgpu::TextureViewDescriptor::default());
+    let sky = HostSky { view: &map, radiance_scale: scale };
+    let made = host.rain_under(&mut rain, &view(), 6.0, &[], Some(sky)).unwrap();
+    let texels: Vec<[f32; 4]> = bytes.iter().map(|texel| texel.map(|byte| f32::from(byte) / 255.0)).collect();
+    let scene = SceneBuilder::new().build(&SkyLight::uniform([0.0; 3]));
+    let expected = expected_among(&rain, &view(), 6.0, &scene, Some(([columns, rows], &texels, scale)));
+    let differ = |a: &[[f32; 4]], b: &[[f32; 4]]| {
+        a.iter().zip(b).filter(|(a, b)| (0..3).any(|k| (a[k] - b[k]).abs() > 8.0e-3)).count()
+    };
+    let off = differ(&made, &expected);
+    assert!(off < made.len() / 100, "{off} of {} pixels differ", made.len());
+    assert!((mean(&made) / mean(&expected) - 1.0).abs() < 2.0e-3, "{} {}", mean(&made), mean(&expected));
+    // The control: without the map drops show the borders of the picture.
+    let without = host.rain(&mut rain, &view(), 6.0, &[]).unwrap();
+    assert!(differ(&without, &expected) > 5 * off.max(20), "{}", differ(&without, &expected));
 }
 
 #[test]
@@ -418,7 +314,7 @@ fn drops_fall_through_the_holes_of_obstacles() {
     builder.add_mesh(&MeshPart::plain(&[a, b, c, d], &order, whole), &glam::Affine3A::IDENTITY);
     let part = MeshPart { uvs: [Some(&coordinates), None], ..MeshPart::plain(&corners, &order, cut) };
     builder.add_mesh(&part, &glam::Affine3A::IDENTITY);
-    let expected = expected_among(&rain, &view, wall_m, &builder.build(&SkyLight::uniform([0.0; 3])));
+    let expected = expected_among(&rain, &view, wall_m, &builder.build(&SkyLight::uniform([0.0; 3])), None);
     let differ = |a: &[[f32; 4]], b: &[[f32; 4]]| {
         a.iter().zip(b).filter(|(a, b)| (0..3).any(|k| (a[k] - b[k]).abs() > 4.0e-3)).count()
     };
@@ -443,12 +339,6 @@ fn drops_fall_through_the_holes_of_obstacles() {
         let error = rain.set_obstacle_meshes(&[mesh]).unwrap_err().to_string();
         assert!(error.contains(text), "{error}");
     }
-}
-
-/// Level ground that reaches far.
-fn ground() -> [[[f32; 3]; 3]; 2] {
-    let [a, b, c, d] = [[-40.0, 0.0, -40.0], [-40.0, 0.0, 40.0], [40.0, 0.0, 40.0], [40.0, 0.0, -40.0]];
-    [[a, b, c], [a, c, d]]
 }
 
 /// Spray stands over obstacles, as on the CPU, and makes no buffer after the first frame.
@@ -622,6 +512,29 @@ fn bad_input_is_an_error_and_leaves_the_rain_as_it_was() {
         (RainView { time_s: f64::NAN, ..view() }, "time is NaN s"),
         (RainView { shutter_s: 2.0, ..view() }, "exposure time is 2 s"),
         (RainView { camera: Viewpoint { fov_y: 0.0, ..view().camera }, ..view() }, "field of view is 0"),
+        (
+            RainView { camera: Viewpoint { fov_y: f32::NAN, ..view().camera }, ..view() },
+            "field of view is NaN",
+        ),
+        (
+            RainView { camera: Viewpoint { eye: Vec3::new(0.0, f32::NAN, 0.0), ..view().camera }, ..view() },
+            "camera is NaN",
+        ),
+        (
+            RainView { camera: Viewpoint { up: Vec3::splat(f32::INFINITY), ..view().camera }, ..view() },
+            "camera is NaN",
+        ),
+        (
+            RainView { camera: Viewpoint { eye: Vec3::splat(2.0e7), ..view().camera }, ..view() },
+            "position of the eye is 20000000 m",
+        ),
+        (
+            RainView {
+                motion: EyeMotion { velocity: Vec3::splat(f32::NAN), ..EyeMotion::default() },
+                ..view()
+            },
+            "velocity of the camera is NaN",
+        ),
         (RainView { camera: Viewpoint { forward: Vec3::ZERO, ..view().camera }, ..view() }, "view direction"),
     ] {
         let error = host.rain(&mut rain, &bad, 6.0, &[]).unwrap_err().to_string();

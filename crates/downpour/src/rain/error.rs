@@ -25,6 +25,16 @@ pub enum RainError {
         /// Allowed values of it.
         allowed: String,
     },
+    /// A view of a texture does not show its first level, in the texture's format.
+    #[error(
+        "the view of the {what} does not fit; allowed: one layer of its first level, in the texture's format ({reason})"
+    )]
+    View {
+        /// The texture.
+        what: &'static str,
+        /// Message of wgpu.
+        reason: String,
+    },
     /// There are too many of something.
     #[error("{found} {quantity}; allowed: up to {allowed}")]
     TooMany {

@@ -21,10 +21,10 @@ const DEPTH_FORMATS: [TextureFormat; 3] =
 #[derive(Clone, Copy, Debug)]
 pub struct PlateTextures<'a> {
     /// Color, into which the rain is blended: `Rgba16Float`, or an 8-bit sRGB format; with the usages `TEXTURE_BINDING` and
-    /// `RENDER_ATTACHMENT`; multisampling resolved.
+    /// `RENDER_ATTACHMENT`; multisampling resolved. The view has the texture's format, and shows one layer of its first level.
     pub color: &'a wgpu::TextureView,
-    /// Depth of the same size: `Depth32Float`, `Depth24Plus` or `Depth16Unorm`, with the usage `TEXTURE_BINDING`;
-    /// multisampling resolved.
+    /// Depth of the same size: `Depth32Float`, `Depth24Plus` or `Depth16Unorm`, with the usage `TEXTURE_BINDING`, and with
+    /// `RENDER_ATTACHMENT` if it has several levels; multisampling resolved. The view shows one layer of its first level.
     pub depth: &'a wgpu::TextureView,
     /// Meaning of its values.
     pub depth_range: DepthRange,
@@ -62,7 +62,9 @@ impl<'a> PlateTextures<'a> {
         let [color, depth] = [self.color, self.depth].map(wgpu::TextureView::texture);
         let both = TextureUsages::TEXTURE_BINDING | TextureUsages::RENDER_ATTACHMENT;
         check_texture("color texture", color, &COLOR_FORMATS, both)?;
-        check_texture("depth texture", depth, &DEPTH_FORMATS, TextureUsages::TEXTURE_BINDING)?;
+        // As an attachment a view tells which level it shows.
+        let of_depth = if depth.mip_level_count() > 1 { both } else { TextureUsages::TEXTURE_BINDING };
+        check_texture("depth texture", depth, &DEPTH_FORMATS, of_depth)?;
         if let Some(sky) = self.sky {
             let texture = sky.view.texture();
             check_texture("sky map", texture, &[texture.format()], TextureUsages::TEXTURE_BINDING)?;
