@@ -12,6 +12,8 @@ use crate::tree::foliage::Twig;
 
 /// Paint of cast iron.
 const IRON: [f32; 3] = [0.028, 0.032, 0.030];
+/// Radius of the foot of the widest lamp post, meters.
+pub(crate) const LAMP_FOOT_M: f32 = 0.17;
 
 /// A street lamp, its light to the side of +x, and the lamp in it.
 pub(crate) fn lamp(era: LampEra) -> (Mesh, Lamp) {
@@ -92,6 +94,7 @@ fn lantern_post() -> (Mesh, Lamp) {
         [0.038, 3.05],
         [0.06, 3.10],
         [0.03, 3.20],
+        [0.0, 3.20],
     ];
     mesh.lathe(iron, Vec3::ZERO, &post, 14);
     // The bar for the ladder.
@@ -194,6 +197,7 @@ pub(crate) fn bench() -> Mesh {
 pub(crate) fn bollard() -> Mesh {
     let mut mesh = Mesh::default();
     let profile = [
+        [0.0, 0.0],
         [0.10, 0.0],
         [0.10, 0.06],
         [0.075, 0.09],
@@ -207,7 +211,7 @@ pub(crate) fn bollard() -> Mesh {
         [0.0, 0.95],
     ];
     mesh.lathe(tinted(Material::Iron, IRON), Vec3::ZERO, &profile, 10);
-    let band = [[0.0655, 0.60], [0.0645, 0.66]];
+    let band = [[0.0, 0.60], [0.0655, 0.60], [0.0645, 0.66], [0.0, 0.66]];
     mesh.lathe(tinted(Material::Iron, [0.55, 0.55, 0.52]), Vec3::ZERO, &band, 10);
     mesh
 }
@@ -217,6 +221,7 @@ pub(crate) fn bin() -> Mesh {
     let mut mesh = Mesh::default();
     let iron = tinted(Material::Iron, [0.09, 0.115, 0.10]);
     let bin = [
+        [0.0, 0.10],
         [0.19, 0.10],
         [0.215, 0.12],
         [0.225, 0.80],
@@ -228,7 +233,7 @@ pub(crate) fn bin() -> Mesh {
         [0.0, 0.30],
     ];
     mesh.lathe(iron, Vec3::ZERO, &bin, 16);
-    mesh.lathe(iron, Vec3::ZERO, &[[0.16, 0.0], [0.16, 0.10]], 12);
+    mesh.lathe(iron, Vec3::ZERO, &[[0.0, 0.0], [0.16, 0.0], [0.16, 0.10], [0.0, 0.10]], 12);
     mesh
 }
 
@@ -236,7 +241,11 @@ pub(crate) fn bin() -> Mesh {
 pub(crate) fn sign_post() -> Mesh {
     let mut mesh = Mesh::default();
     let zinc = plain(Material::Zinc);
-    mesh.tube(zinc, &[(Vec3::ZERO, 0.030), (Vec3::new(0.0, 2.75, 0.0), 0.030)], 9);
+    mesh.tube(
+        zinc,
+        &[(Vec3::ZERO, 0.030), (Vec3::new(0.0, 2.75, 0.0), 0.030), (Vec3::new(0.0, 2.76, 0.0), 0.0)],
+        9,
+    );
     let plate = |radius: f32, z: f32| circle(Vec3::new(0.0, 2.42, z), radius, 24);
     mesh.polygon(tinted(Material::Joinery, [0.36, 0.014, 0.014]), &plate(0.30, 0.040));
     mesh.polygon(tinted(Material::Joinery, [0.012, 0.035, 0.20]), &plate(0.235, 0.042));

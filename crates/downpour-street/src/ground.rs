@@ -75,11 +75,12 @@ impl Ground {
         let mut z = -dice.range(1.5, 4.0);
         while z > -settings.length_m + 1.5 {
             let reach = half_road - 1.3;
-            hollows.push(Hollow {
-                center_m: [dice.range(-reach, reach), z],
-                radii_m: [dice.range(0.5, 0.95), dice.range(0.6, 1.5)],
-                depth_m: dice.range(0.018, 0.028) * (0.8 + 0.5 * settings.age),
-            });
+            let (x, radii_m) = (dice.range(-reach, reach), [dice.range(0.5, 0.95), dice.range(0.6, 1.5)]);
+            let depth_m = dice.range(0.013, 0.021) * (0.8 + 0.5 * settings.age);
+            // Deeper where the crown falls, or the water would run out on its lower side.
+            let fall = 2.0 * CROWN_M * x.abs() / (half_road * half_road);
+            let depth_m = depth_m + 0.8 * fall * radii_m[0];
+            hollows.push(Hollow { center_m: [x, z], radii_m, depth_m });
             z -= dice.range(3.2, 6.0);
         }
         let mut repairs = Vec::new();
@@ -121,6 +122,12 @@ impl Ground {
     /// Distance from the middle to which the lanes reach.
     pub(crate) fn reach(&self) -> f32 {
         self.half_street() + LANE_REACH_M
+    }
+
+    /// z of the ends of the straight part of the curbs, the lower one first.
+    pub(crate) fn straight_curb(&self) -> [f32; 2] {
+        let end = self.corner() - self.pavement;
+        [end - self.length, -end]
     }
 
     /// z of the houses across at the far end.

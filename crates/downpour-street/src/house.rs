@@ -110,10 +110,11 @@ pub(crate) struct PlacedWindow {
     pub(crate) corner: Vec3,
 }
 
-/// A finished house: mesh and windows.
+/// A finished house: mesh, windows, and ends of its doors along the front.
 #[derive(Default)]
 pub(crate) struct Built {
     pub(crate) mesh: Mesh,
+    pub(crate) doors: Vec<[f32; 2]>,
     pub(crate) windows: Vec<PlacedWindow>,
 }
 
@@ -167,7 +168,11 @@ impl House {
         }
         match &self.shop {
             Some(shop) => shop.build(self, &mut built),
-            None => door::door(self, self.bay(self.door_bay), &mut built.mesh),
+            None => {
+                let x = self.bay(self.door_bay);
+                door::door(self, x, &mut built.mesh);
+                built.doors.push(door::opening(self, x).x);
+            }
         }
         roof::roof(self, &mut built);
         built

@@ -28,5 +28,5 @@ pub use settings::{
     LampEra, MAX_CARRIAGEWAY_M, MAX_LENGTH_M, MAX_PAVEMENT_M, MIN_CARRIAGEWAY_M, MIN_LENGTH_M,
     MIN_PAVEMENT_M, Paving, StreetSettings,
 };
-pub use street::{EmissiveSurface, ParkedCar, Street};
+pub use street::{Doorway, EmissiveSurface, ParkedCar, Street};
 pub use textures::{TextureFile, puddle_mask, textures};

@@ -1,5 +1,8 @@
 //! Plan of the street: positions of houses, lamps, cars and furniture.
 
+mod furnish;
+mod occupancy;
+
 use std::collections::BTreeMap;
 
 use glam::Vec3;
@@ -8,13 +11,21 @@ use crate::car;
 use crate::dice::Dice;
 use crate::error::StreetError;
 use crate::furniture;
-use crate::ground::{Ground, Hollow, LANE_M, LANE_REACH_M, PAVEMENT_FALL};
+use crate::ground::{Ground, Hollow, LANE_M, LANE_REACH_M};
 use crate::house::{DEPTH_M, House, HouseKind, WindowDesign, draw, window};
 use crate::material::Material;
 use crate::mesh::{Mesh, tinted, turn};
 use crate::model::{Lamp, Piece, Placement};
 use crate::settings::StreetSettings;
-use crate::tree;
+use furnish::furnish;
+use occupancy::{Footprint, Occupancy, Use};
+
+/// Distance of the lamps from the face of the curb, meters.
+const LAMP_M: f32 = 0.42;
+/// Distance along the street that a lamp may be moved to where there is room, meters.
+const LAMP_REACH_M: f32 = 2.0;
+/// Width of the way to a door beside its opening, on each side, meters.
+const DOOR_MARGIN_M: f32 = 0.1;
 
 /// A parked car: x and z of its middle, meters.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +33,15 @@ pub struct ParkedCar {
     /// x and z of its middle, meters.
     pub center_m: [f32; 2],
     /// Half its width and length, meters.
+    pub half_size_m: [f32; 2],
+}
+
+/// The way from a door to the curb.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Doorway {
+    /// x and z of its middle, meters.
+    pub center_m: [f32; 2],
+    /// Half its edges across and along the street, meters.
     pub half_size_m: [f32; 2],
 }
 
@@ -42,6 +62,7 @@ pub struct Street {
     lamps: Vec<Lamp>,
     hollows: Vec<Hollow>,
     cars: Vec<ParkedCar>,
+    doorways: Vec<Doorway>,
 }
 
 impl Street {
@@ -54,10 +75,15 @@ impl Street {
         let ground = Ground::new(settings);
         let mut plan = Plan::default();
         plan.copies.insert("ground".to_owned(), (ground.mesh(), vec![Placement::default()]));
-        houses(settings, &ground, &mut plan);
-        lamps(settings, &ground, &mut plan);
-        let cars = cars(settings, &ground, &mut plan);
-        furnish(settings, &ground, &cars, &mut plan);
+        let doorways = houses(settings, &ground, &mut plan);
+        let mut taken = Occupancy::new(ground.straight_curb());
+        for way in &doorways {
+            taken.take(Footprint::new(Use::Doorway, way.center_m, way.half_size_m));
+        }
+        lamps(settings, &ground, &mut taken, &mut plan);
+        let cars = cars(settings, &ground, &mut taken, &mut plan);
+        furnish(settings, &ground, &mut taken, &mut plan);
+        wires(settings, &ground, &mut plan);
         let mut pieces: Vec<Piece> = plan
             .copies
             .into_iter()
@@ -67,7 +93,14 @@ impl Street {
             piece.mesh.clean();
         }
         pieces.retain(|piece| !piece.mesh.parts.is_empty());
-        Ok(Self { settings: settings.clone(), pieces, lamps: plan.lamps, hollows: ground.hollows, cars })
+        Ok(Self {
+            settings: settings.clone(),
+            pieces,
+            lamps: plan.lamps,
+            hollows: ground.hollows,
+            cars,
+            doorways,
+        })
     }
 
     /// The opening of a window as a room sees it, 1.1 x 1.14 m: jambs, head, sill and the wall around; its pane would be at z = 0, the
@@ -82,6 +115,7 @@ impl Street {
             lamps: Vec::new(),
             hollows: Vec::new(),
             cars: Vec::new(),
+            doorways: Vec::new(),
         }
     }
 
@@ -119,6 +153,12 @@ impl Street {
     #[must_use]
     pub fn cars(&self) -> &[ParkedCar] {
         &self.cars
+    }
+
+    /// Ways to the doors along both pavements: nothing stands on them.
+    #[must_use]
+    pub fn doorways(&self) -> &[Doorway] {
+        &self.doorways
     }
 
     /// Triangles of all copies.
@@ -182,7 +222,8 @@ fn widths(dice: &mut Dice, length: f32) -> Vec<f32> {
     drawn.into_iter().map(|width| width * length / sum).collect()
 }
 
-fn houses(settings: &StreetSettings, ground: &Ground, plan: &mut Plan) {
+/// Places the houses. Returns the ways to the doors of those along the street.
+fn houses(settings: &StreetSettings, ground: &Ground, plan: &mut Plan) -> Vec<Doorway> {
     let (half, length, reach) = (ground.half_street(), ground.length, ground.reach());
     let near = 2.0 * ground.pavement + LANE_M;
     let far = ground.far_front();
@@ -207,6 +248,7 @@ fn houses(settings: &StreetSettings, ground: &Ground, plan: &mut Plan) {
         }
     }
     plan.copies.insert("walls".to_owned(), (walls, vec![Placement::default()]));
+    let mut doorways = Vec::new();
     let mut stream = 0;
     for (row, (x, z, turn_deg, length)) in rows.into_iter().enumerate() {
         let mut dice = Dice::new(settings.seed, 300 + row as u32);
@@ -229,23 +271,36 @@ fn houses(settings: &StreetSettings, ground: &Ground, plan: &mut Plan) {
                 let design: WindowDesign = placed.design;
                 plan.place(&format!("window {design:?}"), || window(design), at(placed.corner));
             }
+            // The first two rows are those along the street.
+            for [from, to] in built.doors.into_iter().filter(|_| row < 2) {
+                let middle = at(Vec3::X * ((from + to) / 2.0)).position;
+                doorways.push(Doorway {
+                    center_m: [middle[0].signum() * (half - ground.pavement / 2.0), middle[2]],
+                    half_size_m: [ground.pavement / 2.0, (to - from) / 2.0 + DOOR_MARGIN_M],
+                });
+            }
             along += width;
         }
     }
     const { assert!(DEPTH_M <= LANE_REACH_M) };
+    doorways
 }
 
-fn lamps(settings: &StreetSettings, ground: &Ground, plan: &mut Plan) {
+fn lamps(settings: &StreetSettings, ground: &Ground, taken: &mut Occupancy, plan: &mut Plan) {
     let mut dice = Dice::new(settings.seed, 201);
-    let x = ground.half_road + 0.42;
+    let x = ground.half_road + LAMP_M;
     let y = ground.pavement_height(x) - 0.02;
     let mut side = if dice.chance(0.5) { 1.0 } else { -1.0 };
     let mut z = -dice.range(3.0, 6.0);
     let era = settings.lamps;
     while z > -ground.length + 1.0 {
-        let at = Placement::new(side * x, y, z, if side > 0.0 { 180.0 } else { 0.0 });
-        plan.place("lamp", || furniture::lamp(era).0, at);
-        plan.light(&furniture::lamp(era).1, at);
+        // Not before a door.
+        let foot = Footprint::new(Use::Lamp, [side * x, z], [furniture::LAMP_FOOT_M; 2]);
+        if let Some(z) = taken.settle(foot, LAMP_REACH_M) {
+            let at = Placement::new(side * x, y, z, if side > 0.0 { 180.0 } else { 0.0 });
+            plan.place("lamp", || furniture::lamp(era).0, at);
+            plan.light(&furniture::lamp(era).1, at);
+        }
         side = -side;
         z -= settings.lamp_spacing_m * dice.range(0.92, 1.08);
     }
@@ -257,7 +312,12 @@ fn lamps(settings: &StreetSettings, ground: &Ground, plan: &mut Plan) {
     }
 }
 
-fn cars(settings: &StreetSettings, ground: &Ground, plan: &mut Plan) -> Vec<ParkedCar> {
+fn cars(
+    settings: &StreetSettings,
+    ground: &Ground,
+    taken: &mut Occupancy,
+    plan: &mut Plan,
+) -> Vec<ParkedCar> {
     let mut dice = Dice::new(settings.seed, 202);
     let half = [car::HALF_WIDTH_M + 0.14, car::HALF_LENGTH_M];
     let mut cars = Vec::new();
@@ -280,6 +340,7 @@ fn cars(settings: &StreetSettings, ground: &Ground, plan: &mut Plan) -> Vec<Park
                 let at =
                     Placement::new(side * x, ground.road_height(x * side, z) - 0.004, z, turn_deg + slant);
                 plan.place(&format!("car {paint}"), || car::car(paint), at);
+                taken.take(Footprint::new(Use::Car, [side * x, z], half));
                 cars.push(ParkedCar { center_m: [side * x, z], half_size_m: half });
                 z -= 2.0 * half[1] + dice.range(0.7, 1.5);
             } else {
@@ -290,56 +351,9 @@ fn cars(settings: &StreetSettings, ground: &Ground, plan: &mut Plan) -> Vec<Park
     cars
 }
 
-fn furnish(settings: &StreetSettings, ground: &Ground, cars: &[ParkedCar], plan: &mut Plan) {
-    let mut dice = Dice::new(settings.seed, 203);
-    let density = settings.furniture;
-    let curb = ground.half_road + 0.45;
-    let wall = ground.half_street() - 0.55;
-    let height = |x: f32| ground.pavement_height(x);
-    for side in [-1.0f32, 1.0] {
-        let facing = if side > 0.0 { -90.0 } else { 90.0 };
-        let mut z = -dice.range(1.5, 4.0);
-        while z > -ground.length + 1.5 {
-            if dice.chance(density) {
-                let put = |x: f32, turn: f32| Placement::new(side * x, height(x), z, facing + turn);
-                match dice.below(11) {
-                    0 => plan.place("bin", furniture::bin, put(curb, 0.0)),
-                    1 => plan.place("sign post", furniture::sign_post, put(curb - 0.1, 90.0 * side)),
-                    2 | 3 | 9 | 10 if ground.pavement > 2.2 => {
-                        let spin = dice.range(0.0, 360.0);
-                        let at = wall - 0.25;
-                        plan.place("table", furniture::table, put(at, spin));
-                        for k in 0..2 {
-                            let angle = dice.range(-14.0, 14.0) + 180.0 * k as f32;
-                            let dz = if k == 0 { 0.62 } else { -0.62 };
-                            let chair = Placement::new(side * at, height(at), z + dz, angle + 180.0);
-                            plan.place("chair", furniture::chair, chair);
-                        }
-                    }
-                    4 => plan.place("bicycle", furniture::bicycle, put(wall + 0.25, 90.0)),
-                    5 if ground.pavement > 2.6 => {
-                        let x = curb + 0.40;
-                        plan.place("tree", tree::tree, put(x, dice.range(0.0, 360.0)));
-                        // Along +x the pavement rises, away from the road.
-                        let flat =
-                            Placement::new(side * x, height(x), z, if side > 0.0 { 0.0 } else { 180.0 });
-                        plan.place("grate", || tree::grate::grate(PAVEMENT_FALL), flat);
-                    }
-                    6 => plan.place("bench", furniture::bench, put(wall, 0.0)),
-                    7 => plan.place("planter", furniture::planter, put(wall + 0.1, 0.0)),
-                    _ => {
-                        for k in 0..3 {
-                            let at = Placement::new(side * curb, height(curb), z + 1.3 * k as f32 - 1.3, 0.0);
-                            plan.place("bollard", furniture::bollard, at);
-                        }
-                    }
-                }
-            }
-            z -= dice.range(1.9, 3.6);
-        }
-    }
-    let _ = cars;
-    // Wires across the street, from house to house.
+/// Wires across the street, from house to house.
+fn wires(settings: &StreetSettings, ground: &Ground, plan: &mut Plan) {
+    let mut dice = Dice::new(settings.seed, 204);
     let mut wires = Mesh::default();
     let mut z = -dice.range(6.0, 12.0);
     while z > -ground.length {

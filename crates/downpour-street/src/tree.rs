@@ -30,7 +30,8 @@ pub(crate) fn tree() -> Mesh {
     let mut mesh = Mesh::default();
     let bark = plain(Material::Bark);
     let trunk = trunk();
-    mesh.tube(bark, &trunk, 10);
+    let tip = trunk.last().map(|&(top, radius)| (top + Vec3::Y * radius, 0.0));
+    mesh.tube(bark, &trunk.iter().copied().chain(tip).collect::<Path>(), 10);
     leaves(&mut mesh, &trunk, 0.86, 9, 1);
     for k in 0..LIMBS {
         let limb = limb(&trunk, k);

@@ -1,38 +1,16 @@
 //! Many streets are valid: numbers, triangles, cars, hollows, and files that the project's own reader takes.
 
-use std::collections::BTreeMap;
-
 use downpour_scene::Budget;
 use downpour_scene::gltf::{read_scene, read_triangles};
-use downpour_street::{
-    Car, LampEra, MAX_CARRIAGEWAY_M, MAX_PAVEMENT_M, MIN_CARRIAGEWAY_M, MIN_LENGTH_M, MIN_PAVEMENT_M,
-    Material, Mesh, Part, Paving, Street, StreetError, StreetSettings, TimeOfDay,
-};
+use downpour_street::{Car, Material, Mesh, Part, Paving, Street, StreetError, StreetSettings, TimeOfDay};
 use glam::Vec3;
 use rayon::prelude::*;
 
+mod common;
+use common::settings;
+
 /// Number of streets.
 const SEEDS: u64 = 40;
-
-/// Settings of a short street that differ with its seed.
-fn settings(seed: u64) -> StreetSettings {
-    let between =
-        |low: f32, high: f32, n: u64| low + (high - low) * ((seed % 11 * 7 + n * 3) % 11) as f32 / 10.0;
-    StreetSettings {
-        seed,
-        length_m: MIN_LENGTH_M + (seed % 3) as f32 * 6.0,
-        carriageway_m: between(MIN_CARRIAGEWAY_M, MAX_CARRIAGEWAY_M, 1),
-        pavement_m: between(MIN_PAVEMENT_M, MAX_PAVEMENT_M, 2),
-        paving: if seed.is_multiple_of(2) { Paving::Cobbles } else { Paving::Asphalt },
-        age: between(0.0, 1.0, 3),
-        lamps: [LampEra::Lantern, LampEra::Sodium, LampEra::Led][seed as usize % 3],
-        lamp_spacing_m: between(6.0, 60.0, 4),
-        furniture: between(0.0, 1.0, 5),
-        cars: between(0.0, 1.0, 6),
-        shops: between(0.0, 1.0, 7),
-        lit_windows: between(0.0, 1.0, 8),
-    }
-}
 
 fn corners(part: &Part, triangle: &[u32]) -> [Vec3; 3] {
     [0, 1, 2].map(|k| part.vertices[triangle[k] as usize].position)
@@ -61,10 +39,10 @@ fn check_mesh(name: &str, mesh: &Mesh) {
     }
 }
 
-/// Checks all of a street that its seed makes different.
-fn check_street(seed: u64) {
-    let settings = settings(seed);
-    let street = Street::generate(&settings).unwrap_or_else(|error| panic!("{seed}: {error}"));
+/// Checks all of a street that its seed makes different. Returns its number of triangles.
+fn check_street(settings: &StreetSettings) -> usize {
+    let seed = settings.seed;
+    let street = Street::generate(settings).unwrap_or_else(|error| panic!("{seed}: {error}"));
     for piece in street.pieces() {
         assert!(!piece.copies.is_empty(), "{seed} {}", piece.name);
         check_mesh(&format!("street {seed}, {}", piece.name), &piece.mesh);
@@ -87,11 +65,22 @@ fn check_street(seed: u64) {
             assert!(apart(0) > 0.0 || apart(1) > 0.0, "{seed} {car:?} {other:?}");
         }
     }
+    street.triangle_count()
 }
 
 #[test]
 fn many_streets_are_valid() {
-    (0..SEEDS).for_each(check_street);
+    (0..SEEDS).for_each(|seed| _ = check_street(&settings(seed)));
+}
+
+/// Streets of 80 m have about as many triangles as the shipped one.
+#[test]
+fn streets_of_the_default_length_are_valid() {
+    (0..6u64).into_par_iter().for_each(|seed| {
+        let settings = StreetSettings { seed, ..StreetSettings::default() };
+        let triangles = check_street(&settings);
+        assert!((280_000..520_000).contains(&triangles), "{seed}: {triangles}");
+    });
 }
 
 /// A thousand streets, of seeds from the whole range too.
@@ -101,7 +90,7 @@ fn a_thousand_streets_are_valid() {
     (SEEDS..1000).into_par_iter().for_each(|number| {
         // Every fourth one has a large seed.
         let large = number.wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        check_street(if number % 4 == 3 { large } else { number });
+        check_street(&settings(if number % 4 == 3 { large } else { number }));
     });
 }
 
@@ -138,15 +127,34 @@ fn hollows_are_below_their_surroundings() {
     }
 }
 
-/// The texture on each wall and on the ground has the size of its tile: meters of surface for each unit of its coordinates.
+/// The texture on each surface has the size of its tile: meters of surface for each unit of its coordinates.
 #[test]
 fn textures_have_their_scale() {
-    let street = Street::generate(&settings(3)).unwrap();
-    for material in
-        [Material::Brick, Material::BrickPale, Material::Plaster, Material::Slabs, Material::Asphalt]
-    {
+    let cobbles = StreetSettings { furniture: 1.0, ..StreetSettings::default() };
+    let asphalt = StreetSettings { paving: Paving::Asphalt, seed: 3, ..cobbles.clone() };
+    let streets = [cobbles, asphalt].map(|settings| Street::generate(&settings).unwrap());
+    for material in [
+        Material::Asphalt,
+        Material::Ashlar,
+        Material::Bark,
+        Material::Brick,
+        Material::BrickPale,
+        Material::Cloth,
+        Material::Cover,
+        Material::Curb,
+        Material::Iron,
+        Material::Joinery,
+        Material::Plaster,
+        Material::Roof,
+        Material::Setts,
+        Material::Slabs,
+        Material::Stone,
+        Material::Wood,
+        Material::Zinc,
+    ] {
         let (mut surface, mut picture) = (0.0, 0.0);
-        for part in street.pieces().iter().filter_map(|piece| piece.mesh.parts.get(&material)) {
+        let pieces = streets.iter().flat_map(Street::pieces);
+        for part in pieces.filter_map(|piece| piece.mesh.parts.get(&material)) {
             for triangle in part.indices.chunks_exact(3) {
                 let [a, b, c] = corners(part, triangle);
                 let [p, q, r] = [0, 1, 2].map(|k| part.vertices[triangle[k] as usize].uv);
@@ -154,40 +162,10 @@ fn textures_have_their_scale() {
                 picture += (q - p).perp_dot(r - p).abs();
             }
         }
-        if surface > 0.0 {
-            let tile_m = (surface / picture).sqrt();
-            assert!((0.8..1.25).contains(&(tile_m / material.tile_m())), "{material:?} {tile_m}");
-        }
+        assert!(surface > 0.0, "{material:?}");
+        let tile_m = (surface / picture).sqrt();
+        assert!((0.8..1.25).contains(&(tile_m / material.tile_m())), "{material:?} {tile_m}");
     }
-}
-
-/// Volume inside a closed surface, positive if its faces look outwards (divergence theorem), and its open edges.
-fn closed(mesh: &Mesh, material: Material) -> (f32, usize) {
-    let part = &mesh.parts[&material];
-    let key = |p: Vec3| (p * 1e4).round().to_array().map(|v| v as i32);
-    let (mut volume, mut edges) = (0.0, BTreeMap::new());
-    for triangle in part.indices.chunks_exact(3) {
-        let [a, b, c] = corners(part, triangle);
-        volume += a.dot(b.cross(c)) / 6.0;
-        for (from, to) in [(a, b), (b, c), (c, a)] {
-            *edges.entry((key(from), key(to))).or_insert(0) += 1;
-            *edges.entry((key(to), key(from))).or_insert(0) -= 1;
-        }
-    }
-    (volume, edges.values().filter(|&&count| count != 0).count())
-}
-
-#[test]
-fn boxes_of_benches_are_closed_and_look_outwards() {
-    let street = (0..SEEDS)
-        .map(|seed| Street::generate(&StreetSettings { furniture: 1.0, ..settings(seed) }).unwrap())
-        .find(|street| street.pieces().iter().any(|piece| piece.name == "bench"))
-        .unwrap();
-    let bench = street.pieces().iter().find(|piece| piece.name == "bench").unwrap();
-    let (volume, open) = closed(&bench.mesh, Material::Wood);
-    // Four planks of 1.7 x 0.088 x 0.032 m and three of 1.7 x 0.03 x 0.09 m.
-    assert!((volume - (4.0 * 1.7 * 0.088 * 0.032 + 3.0 * 1.7 * 0.03 * 0.09)).abs() < 1e-4, "{volume}");
-    assert_eq!(open, 0);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod skies;
 mod sky;
+mod water;
 mod weather;
 
 use std::path::{Path, PathBuf};

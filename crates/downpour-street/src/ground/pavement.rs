@@ -67,6 +67,7 @@ impl Line {
 }
 
 /// Points of the profile of gutter, curb and pavement.
+#[derive(Clone, Copy)]
 struct ProfilePoint {
     /// Distance from the face of the curb.
     distance: f32,
@@ -76,6 +77,8 @@ struct ProfilePoint {
     more: f32,
     /// Material up to the next point.
     material: Material,
+    /// Material whose texture and tint it has: at the end of a material that of the one before.
+    skin: Material,
 }
 
 fn profile(ground: &Ground) -> Vec<ProfilePoint> {
@@ -84,6 +87,7 @@ fn profile(ground: &Ground) -> Vec<ProfilePoint> {
         fraction,
         more,
         material,
+        skin: material,
     };
     let mut all = vec![
         point(-GUTTER_M, 0.0, ground.edge(), Material::Setts),
@@ -102,7 +106,15 @@ fn profile(ground: &Ground) -> Vec<ProfilePoint> {
         let d = rest * k as f32 / 6.0;
         all.push(point(CURB_M + d, 1.0, 0.02 * d, Material::Slabs));
     }
-    all
+    // Where materials meet there are two points: each has coordinates in its own texture.
+    let mut twice: Vec<ProfilePoint> = Vec::new();
+    for next in all {
+        if let Some(last) = twice.last().filter(|last| last.material != next.material) {
+            twice.push(ProfilePoint { skin: last.skin, ..next });
+        }
+        twice.push(next);
+    }
+    twice
 }
 
 /// Draws the profile along stations; `mirror` is -1 for the other side of the street.
@@ -116,7 +128,7 @@ fn sweep(ground: &Ground, mesh: &mut Mesh, line: &Line, mirror: f32, side: u32) 
     mesh.grid(
         [columns, stations.len() - 1],
         |i, j| {
-            let ProfilePoint { distance, fraction, more, material } = profile[column(i)];
+            let ProfilePoint { distance, fraction, more, material, skin } = profile[column(i)];
             let station = &stations[j];
             let z = station.at.y;
             let open = ground.open(z);
@@ -133,7 +145,7 @@ fn sweep(ground: &Ground, mesh: &mut Mesh, line: &Line, mirror: f32, side: u32) 
             let flat = station.at + station.out * (distance + joint + lean * fraction);
             let y = fraction * CURB_HEIGHT_M + more + wave + (lean - joint) * fraction + settled;
             let p = Vec3::new(flat.x * mirror, y, flat.y);
-            let (uv, tint) = match material {
+            let (uv, tint) = match skin {
                 Material::Curb => {
                     // From the foot of the face over the edge to the back.
                     let over = fraction * CURB_HEIGHT_M + distance.max(0.0);
@@ -157,7 +169,7 @@ fn sweep(ground: &Ground, mesh: &mut Mesh, line: &Line, mirror: f32, side: u32) 
         },
         |i, _| {
             let (from, to) = (column(i), column(i + 1));
-            Some(profile[from.min(to)].material)
+            Some(profile[from.min(to)].skin)
         },
     );
 }

@@ -31,7 +31,8 @@ impl Shop {
         let mesh = &mut built.mesh;
         let (left, right) = (0.3, house.width_m - 0.3 - DOOR_M);
         let paint = tinted(Material::Joinery, self.paint);
-        self.glazing(mesh, [left, right], low);
+        let entrance = [mix(left, right, 0.5) - 0.48, mix(left, right, 0.5) + 0.48];
+        self.glazing(mesh, [left, right], entrance, low);
         // The house's door, between wall and shop.
         let middle = right + DOOR_M * 0.5;
         let (material, tint) = house.base;
@@ -44,6 +45,7 @@ impl Shop {
         }
         mesh.cuboid(wall, p(middle - half, low + 2.76, -0.3), p(middle + half, top, 0.0), BEHIND);
         door::leaf(house, middle, mesh);
+        built.doors = vec![entrance, [middle - half, middle + half]];
         // Pilasters with base and capital, board, ledge.
         for x in [left - 0.18, right - 0.1] {
             mesh.beveled(paint, p(x, low, 0.0), p(x + 0.28, low + BOARD_M[1], 0.09), 0.012);
@@ -88,11 +90,10 @@ impl Shop {
         room(mesh, house.seed, [left, right], low, is_open);
     }
 
-    /// Stall riser, panes with bars, and a glazed door in the middle third.
-    fn glazing(&self, mesh: &mut Mesh, [left, right]: [f32; 2], low: f32) {
+    /// Stall riser, and panes with bars on both sides of a glazed door.
+    fn glazing(&self, mesh: &mut Mesh, [left, right]: [f32; 2], door: [f32; 2], low: f32) {
         let paint = tinted(Material::Joinery, self.paint);
         let (z, top) = (-0.10, low + GLASS_M);
-        let door = [mix(left, right, 0.5) - 0.48, mix(left, right, 0.5) + 0.48];
         let mut bar = |x: [f32; 2], y: [f32; 2], thick: f32| {
             mesh.cuboid(paint, Vec3::new(x[0], y[0], z - 0.03), Vec3::new(x[1], y[1], z + thick), 0);
         };

@@ -1,6 +1,8 @@
-//! The weather files of the street: by day and by night, ten looks.
+//! The weather files of the street: by day and by night, eleven looks.
 
 use downpour_street::Street;
+
+use super::water::{far, near, water};
 
 /// A weather file on its way to disk.
 pub(super) struct WeatherFile {
@@ -26,7 +28,8 @@ const LIGHTNING: &str =
 const DRIPS: &str = "\n[drips]\nenabled = true\n";
 /// Mist of a cloudburst over road and cars.
 const SPRAY: &str = "\n[spray]\nenabled = true\n";
-/// A sun at 11 degrees, below the edge of the clouds, along the street; 127.5 klx exp(-0.21 / sin h), tinted.
+/// A sun at 24 degrees, below the edge of the clouds and across the street: 127.5 klx exp(-0.21 / sin h) is 76 klx, and a veil of thin
+/// cloud leaves 60.
 const LOW_SUN: &str = "\n[sky]\nzenith_color = [900, 1000, 1180]\n\n[sun]\nazimuth_deg = 62\nelevation_deg = 24\n\
                        illuminance_lux = 60000\ncolor = [1, 0.84, 0.62]\n";
 
@@ -111,24 +114,34 @@ pub(super) fn make(street: &Street) -> Vec<WeatherFile> {
         text: format!("# {title}\n{HEAD}{model}{}", rest.concat()),
     };
     let night = model(true, "");
+    // Before the camera of `along`, along the whole of a walk, and before a camera that looks toward z = 0.
+    let ahead = water(street, &[near(-8.0, -32.0), far(-32.0, -82.0)]);
+    let walked = water(street, &[near(-8.0, -32.0), near(-32.0, -54.0), far(-54.0, -82.0)]);
+    let back = water(street, &[near(-28.0, -50.0), far(2.0, -28.0)]);
     vec![
         file(
             "day.toml",
             "An old street on an overcast day in heavy rain.",
             model(false, ""),
-            &[&rain(60), DAY_SKY, &along(-0.2), SIZE],
+            &[&rain(60), DAY_SKY, &along(-0.2), SIZE, &ahead],
         ),
         file(
             "night.toml",
             "An old street at night in heavy rain: lanterns, lit windows, shops.",
             night.clone(),
-            &[&rain(60), NIGHT_SKY, &along(NIGHT_EV), SIZE],
+            &[&rain(60), NIGHT_SKY, &along(NIGHT_EV), SIZE, &ahead],
         ),
         file(
             "walk.toml",
             "A walk through the street at night, 20 s, for clips: render --frames.",
             night.clone(),
-            &[&rain(60), NIGHT_SKY, &walk(NIGHT_EV), SIZE],
+            &[&rain(60), NIGHT_SKY, &walk(NIGHT_EV), SIZE, &walked],
+        ),
+        file(
+            "walk_day.toml",
+            "A walk through the street on an overcast day, 20 s, for clips: render --frames.",
+            model(false, ""),
+            &[&rain(60), DAY_SKY, &walk(-0.2), SIZE, &walked],
         ),
         file(
             "drive.toml",
@@ -138,36 +151,46 @@ pub(super) fn make(street: &Street) -> Vec<WeatherFile> {
                 &rain(40),
                 SPRAY,
                 NIGHT_SKY,
-                &camera([-3.75, 1.5, -4.0], [-0.7, 1.25, -24.0], 50.0, NIGHT_EV),
+                &camera([-2.9, 1.5, -4.0], [-0.9, 1.15, -24.0], 50.0, NIGHT_EV),
                 SIZE,
+                // Hollows lie before its wheels.
+                &ahead,
             ],
         ),
         file(
             "dusk.toml",
             "The street at dusk in rain: windows and lanterns are lit, the sky is still blue.",
             night.clone(),
-            &[&rain(30), DRIPS, DUSK_SKY, &along(-1.3), SIZE],
+            &[&rain(30), DRIPS, DUSK_SKY, &along(-1.3), SIZE, &ahead],
         ),
         file(
             "storm.toml",
-            "The street in a storm: a dark sky, a cloudburst that a wind drives along it, lightning.",
+            "The street in a storm: a dark sky, a cloudburst that a wind drives along it to its left, lightning.",
             model(false, ""),
             &[
                 &rain(150),
                 DRIPS,
                 SPRAY,
                 STORM_SKY,
-                "\n[[wind]]\nuniform = { speed_m_s = 9, towards_deg = 80 }\n",
+                "\n[[wind]]\nuniform = { speed_m_s = 9, towards_deg = 97 }\n",
                 LIGHTNING,
                 &along(-0.9),
                 SIZE,
+                &ahead,
             ],
         ),
         file(
             "rain-shadow.toml",
             "Rain before a low sun below clouds: drops shine against houses in the shade.",
             model(false, ""),
-            &[&rain(40), DRIPS, LOW_SUN, &camera([1.6, 1.5, -52.0], [-0.6, 2.6, -30.0], 45.0, -0.6), SIZE],
+            &[
+                &rain(40),
+                DRIPS,
+                LOW_SUN,
+                &camera([1.6, 1.5, -52.0], [-0.6, 2.6, -30.0], 45.0, -0.6),
+                SIZE,
+                &back,
+            ],
         ),
         file(
             "puddles.toml",
@@ -223,12 +246,15 @@ mod tests {
     use downpour_street::StreetSettings;
     use downpour_weather::Weather;
 
+    /// Vertical fields of view that show near rain as an eye sees it, degrees; on a picture of 16:9 that is 66 to 90 degrees across.
+    const EYE_DEG: std::ops::RangeInclusive<f64> = 40.0..=60.0;
+
     #[test]
     fn every_file_is_a_weather_with_the_lens_of_an_eye() {
         let folder = tempfile::tempdir().expect("a folder");
         let street = Street::generate(&StreetSettings::default()).expect("a street");
         let files = make(&street);
-        assert_eq!(files.len(), 10);
+        assert_eq!(files.len(), 11);
         std::fs::write(
             folder.path().join("pavement_puddle.png"),
             downpour_street::puddle_mask().expect("a mask"),
@@ -240,6 +266,8 @@ mod tests {
             let weather = Weather::read(&path, &mut Budget::default());
             let weather = weather.unwrap_or_else(|error| panic!("{error}"));
             assert!(!weather.models.is_empty(), "{}", file.name);
+            let fov_deg = weather.camera.fov.map(f64::to_degrees);
+            assert!(fov_deg.is_some_and(|deg| EYE_DEG.contains(&deg)), "{}: {fov_deg:?}", file.name);
         }
     }
 }
