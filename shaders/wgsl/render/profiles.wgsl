@@ -1,6 +1,6 @@
 // Profiles of a picture's streaks in the streak radiance table: which streaks have one, how fine it is, and where it is.
 // Method: a streak that is sampled in its pixels has a profile, the finer the wider the streak. Where all profiles together have no
-// room, all are made coarser in time, until they fit; where even the coarsest do not, none has one, and streaks are averaged by a
+// room, all are made coarser across and in time, until they fit; where even the coarsest do not, none has one, and streaks are averaged by a
 // loop. Places are given in any order: what a profile holds does not depend on where it is.
 // Twin: downpour_render::rain::profiles.
 
@@ -90,8 +90,9 @@ fn profiles_coarser(sizes: vec4u, level: u32) -> vec4u {
     if level == 0u {
         return sizes;
     }
-    let rows = max(sizes.x >> level, 2u);
-    return vec4u(rows, sizes.y, profiles_rows_of(rows), 1u);
+    let rows = max(sizes.x / (level + 1u), 2u);
+    let columns = max(sizes.y - min(STREAK_SUMS * level, sizes.y), STREAK_SUMS);
+    return vec4u(rows, columns, profiles_rows_of(rows), 1u);
 }
 
 // Rays of a profile, and its entries in the table.

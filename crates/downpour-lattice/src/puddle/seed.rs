@@ -21,6 +21,7 @@ use downpour_math::ops;
 use downpour_shaders::lattice::puddle::{
     PUDDLE_SEED_BUMP, PUDDLE_SEED_CRATER, PUDDLE_SEED_HEIGHT, PUDDLE_SEED_SHIFT, PUDDLE_SEED_TURN,
 };
+use rayon::prelude::*;
 
 use super::dispersion::Dispersion;
 use super::lattice::Links;
@@ -144,7 +145,7 @@ impl PuddleSeed {
 
 /// Craters of impacts.
 pub(crate) fn craters(model: &Model, impacts: &[Impact]) -> Result<Vec<PuddleSeed>, LatticeError> {
-    impacts.iter().map(|impact| crater(model, impact)).collect()
+    impacts.par_iter().map(|impact| crater(model, impact)).collect()
 }
 
 fn to_cells(model: &Model, position_m: [f32; 2]) -> Result<[f32; 2], LatticeError> {

@@ -20,7 +20,7 @@ use super::project::{FallingOnGpu, JobGroups, ListOnGpu, ProjectPass, ProjectPip
 use super::spray::{SprayOf, SprayPass, SprayPipeline};
 use super::tiles::{TilesPass, TilesPipeline};
 use crate::rain::light::{DropLightTable, DropLights};
-use crate::rain::profiles::{MAX_ENTRIES, MAX_RAYS, ProfilesFrame};
+use crate::rain::profiles::ProfilesFrame;
 use crate::rain::project::ProjectFrame;
 use crate::rain::tiles::TilesFrame;
 use crate::rain::{DropMasks, DropsFrame, Rain, RainOptions, ScreenDrop, StreakPath, StreakRay};
@@ -206,8 +206,7 @@ impl RainPipeline {
     ) -> Result<RainPass<'a>, GpuError> {
         let (masks, of_masks) = masks;
         let project = ProjectFrame::new(&rain.frame.camera, of_masks, options, falling.count);
-        let profiles = ProfilesFrame::new(&options.exposure, project.room, options.medium.class())
-            .with_room(MAX_RAYS / 2, MAX_ENTRIES / 2);
+        let profiles = ProfilesFrame::new(&options.exposure, project.room, options.medium.class());
         let frames = (&project, &profiles);
         let (pass, drops, streaks) =
             self.project.prepare(buffers, falling, &masks.tables, frames, &rain.profiles)?;

@@ -10,6 +10,7 @@ use downpour_shaders::render::rain::{
     PROFILES_WIDTHS, PROJECT_CLASSES, STREAK_SUMS, STREAK_TURN,
 };
 
+use super::DropMasks;
 use super::exposure::Exposure;
 use super::shapes;
 use super::streak::ScreenDrop;
@@ -17,12 +18,14 @@ use super::streak_light::UNITS;
 use super::streak_lookup::STREAK_MEAN_ENTRIES;
 use super::streak_path::StreakPath;
 use super::streak_span::streak_span;
-use super::{DropMasks, StreakRay};
 
-/// Most rays, and most entries of the table: 128 MiB each, what every device binds.
-pub const MAX_RAYS: u32 = (128 << 20) / size_of::<StreakRay>() as u32;
-/// See [`MAX_RAYS`].
-pub const MAX_ENTRIES: u32 = 128 << 20 >> 4;
+/// Most rays of a picture's profiles: a million, on the CPU as on a device, so that both have the same profiles.
+pub const MAX_RAYS: u32 = 1 << 20;
+/// Most entries of the table: 64 MiB.
+pub const MAX_ENTRIES: u32 = 64 << 20 >> 4;
+
+/// Fewest rays of a row: four columns of as many.
+const MIN_ROW: u32 = STREAK_SUMS * STREAK_SUMS;
 
 /// Uniforms of the kernels. The same layout as `ProfilesFrame` in WGSL.
 #[repr(C)]
@@ -74,16 +77,16 @@ impl ProfilesFrame {
         Self { max_rays, max_entries: max_entries.max(self.first_entry), ..self }
     }
 
-    /// Most streaks that have a profile: the coarsest has two rows of 12 x 12 rays.
+    /// Most streaks that have a profile: the coarsest has two rows of 4 x 4 rays.
     #[must_use]
     pub fn max_paths(&self) -> u32 {
-        (self.max_rays / (2 * 144)).max(1)
+        (self.max_rays / (2 * MIN_ROW)).max(1)
     }
 
     /// Most jobs of each kind: rows of rays, and parts of profiles, whose points have [`STREAK_SUMS`] entries each.
     #[must_use]
     pub fn max_jobs(&self) -> [u32; 2] {
-        [self.max_rays / 144, self.max_entries / STREAK_SUMS / UNITS + self.max_paths()]
+        [self.max_rays / MIN_ROW, self.max_entries / STREAK_SUMS / UNITS + self.max_paths()]
     }
 }
 
@@ -152,14 +155,16 @@ pub fn profiles_sized(drop: &ScreenDrop) -> Sizes {
     [rows, PROFILES_COLUMNS[kind] as u32, profiles_rows_of(rows), PROFILES_FINE[kind] as u32]
 }
 
-/// Sizes of a profile that is made coarser so many times.
+/// Sizes of a profile that is made coarser so many times: with four columns fewer each time, as long as there are any, and with a half, a third,
+/// ... of the rows. Fewer columns cost a thin streak little, whose light has to be right as a whole.
 #[must_use]
 pub fn profiles_coarser(sizes: Sizes, level: u32) -> Sizes {
     if level == 0 {
         return sizes;
     }
-    let rows = (sizes[0] >> level).max(2);
-    [rows, sizes[1], profiles_rows_of(rows), 1]
+    let rows = (sizes[0] / (level + 1)).max(2);
+    let columns = sizes[1].saturating_sub(STREAK_SUMS * level).max(STREAK_SUMS);
+    [rows, columns, profiles_rows_of(rows), 1]
 }
 
 /// Rays of a profile, and its entries in the table.
