@@ -99,7 +99,12 @@ def material(file, index, kind):
     if "metallicRoughnessTexture" in look:
         used = look["metallicRoughnessTexture"]
         roughness, metallic = channel(file, used, 1, roughness), channel(file, used, 2, metallic)
-    if kind == "principled":
+    porosity = found.get("extras", {}).get("porosity")
+    if kind == "wet" and porosity is not None:
+        import wet
+
+        bsdf = wet.film(base[:3], porosity)
+    elif kind == "principled":
         bsdf = {"type": "principled", "base_color": color, "roughness": roughness, "metallic": metallic, "specular": 0.5}
         if not isinstance(roughness, dict):
             bsdf["roughness"] = max(roughness, 0.03)

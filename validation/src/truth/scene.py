@@ -146,6 +146,10 @@ def main(given):
         "share": float(within.mean()),
         "exposure": factor,
     }
+    if given.bsdf == "wet":
+        import wet
+
+        values |= wet.differences(ours, theirs, wet.ground(scene, within))
     compare.beside(theirs, ours, factor, given.beside)
     for name, value in values.items():
         print(name, repr(float(value)))

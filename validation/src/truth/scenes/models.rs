@@ -6,6 +6,9 @@ use std::path::Path;
 use crate::truth::write;
 use downpour_math::ops::f64 as ops;
 
+/// Extension of light above 1.
+const STRENGTH: &str = "KHR_materials_emissive_strength";
+
 /// A material: base color, metallic, roughness.
 #[derive(Clone, Copy, Debug)]
 struct Look([f64; 3], f64, f64);
@@ -13,6 +16,10 @@ struct Look([f64; 3], f64, f64);
 /// Triangles of one material.
 #[derive(Clone, Debug, Default)]
 struct Part {
+    /// Radiance that it gives off.
+    glow: [f64; 3],
+    /// Fraction that soaks up rain.
+    porosity: Option<f64>,
     positions: Vec<[f64; 3]>,
     normals: Vec<[f64; 3]>,
     indices: Vec<u32>,
@@ -23,6 +30,8 @@ struct Part {
 pub(super) struct Model {
     pub(super) name: &'static str,
     pub(super) of_night: bool,
+    /// True if the rain has made all of it wet.
+    pub(super) is_wet: bool,
     pub(super) eye: [f64; 3],
     pub(super) at: [f64; 3],
     pub(super) fov_deg: f64,
@@ -40,7 +49,26 @@ const WHITE: Look = Look([0.8, 0.8, 0.8], 0.0, 1.0);
 
 /// All models.
 pub(super) fn all() -> Vec<Model> {
-    vec![street("street", false), shed(), arcade(), spheres(), courtyard(), street("lamps", true), hall()]
+    let dry =
+        [street("street", false), shed(), arcade(), spheres(), courtyard(), street("lamps", true), hall()];
+    let wet = [sign("wet-sign-porous", 1.0, 0.85), sign("wet-sign-smooth", 0.0, 0.5)];
+    dry.into_iter().chain(wet).collect()
+}
+
+/// A sign, 1 m x 0.5 m, 0.3 m over level wet ground and 4 m from the eye. The ground throws back red only, the sky is gray
+/// and the sign has no green: blue less green is what the film mirrors of the sign, sample by sample.
+fn sign(name: &'static str, porosity: f64, roughness: f64) -> Model {
+    let mut model = Model::new(name, [0.0, 1.5, 4.0], [0.0, 0.1, 0.0], 46.0);
+    model.is_wet = true;
+    model.cuboid(Look([0.2, 0.0, 0.0], 0.0, roughness), [-30.0, -1.0, -30.0], [30.0, 0.0, 30.0]);
+    model.last().porosity = Some(porosity);
+    // To one side, so that a mirrored picture differs. A box without light keeps what is behind it dark; it is thin, as our ground stays
+    // dry below it.
+    let black = Look([0.0; 3], 0.0, 1.0);
+    model.cuboid(black, [-1.3, 0.3, -0.012], [-0.3, 0.8, -0.002]);
+    model.upright(black, [-1.3, 0.3], [-0.3, 0.8]);
+    model.last().glow = [4.0, 0.0, 0.02];
+    model
 }
 
 fn street(name: &'static str, of_night: bool) -> Model {
@@ -149,7 +177,21 @@ fn hall() -> Model {
 
 impl Model {
     fn new(name: &'static str, eye: [f64; 3], at: [f64; 3], fov_deg: f64) -> Self {
-        Self { name, of_night: false, eye, at, fov_deg, lamps: Vec::new(), parts: Vec::new() }
+        Self { name, of_night: false, is_wet: false, eye, at, fov_deg, lamps: Vec::new(), parts: Vec::new() }
+    }
+
+    /// The part that was added last.
+    fn last(&mut self) -> &mut Part {
+        let last = self.parts.len() - 1;
+        &mut self.parts[last].1
+    }
+
+    /// A rectangle in the plane z = 0, seen from +Z.
+    fn upright(&mut self, look: Look, [left, low]: [f64; 2], [right, high]: [f64; 2]) {
+        let positions = vec![[left, low, 0.0], [right, low, 0.0], [right, high, 0.0], [left, high, 0.0]];
+        let normals = vec![[0.0, 0.0, 1.0]; 4];
+        self.parts
+            .push((look, Part { positions, normals, indices: vec![0, 1, 2, 0, 2, 3], ..Part::default() }));
     }
 
     fn cuboid(&mut self, look: Look, low: [f64; 3], high: [f64; 3]) {
@@ -247,13 +289,26 @@ impl Model {
             ));
             nodes.push(format!("{{\"mesh\":{k}}}"));
             let [r, g, b] = base;
-            materials.push(format!(
-                "{{\"pbrMetallicRoughness\":{{\"baseColorFactor\":[{r},{g},{b},1],\"metallicFactor\":{metallic},\"roughnessFactor\":{roughness}}}}}"
-            ));
+            let mut material = format!(
+                "{{\"pbrMetallicRoughness\":{{\"baseColorFactor\":[{r},{g},{b},1],\"metallicFactor\":{metallic},\"roughnessFactor\":{roughness}}}"
+            );
+            let strength = part.glow.into_iter().fold(0.0, f64::max);
+            if strength > 0.0 {
+                let color = part.glow.map(|c| c / strength);
+                let _ = write!(
+                    material,
+                    ",\"emissiveFactor\":{color:?},\"extensions\":{{\"{STRENGTH}\":{{\"emissiveStrength\":{strength}}}}}"
+                );
+            }
+            if let Some(porosity) = part.porosity {
+                let _ = write!(material, ",\"extras\":{{\"porosity\":{porosity}}}");
+            }
+            materials.push(material + "}");
         }
         let binary = file.with_extension("bin");
         let uri = binary.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        let mut text = String::from("{\"asset\":{\"version\":\"2.0\"},\"scene\":0,");
+        let mut text =
+            format!("{{\"asset\":{{\"version\":\"2.0\"}},\"extensionsUsed\":[\"{STRENGTH}\"],\"scene\":0,");
         let all: Vec<String> = (0..nodes.len()).map(|k| k.to_string()).collect();
         let _ = write!(text, "\"scenes\":[{{\"nodes\":[{}]}}],", all.join(","));
         for (name, list) in [

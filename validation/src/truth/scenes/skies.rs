@@ -1,7 +1,10 @@
-//! Skies as Radiance HDR files: a low sun in a clear sky, an overcast one, and night.
+//! Skies as Radiance HDR files: a low sun in a clear sky, an overcast one, an even one, and night.
 
 use crate::truth::sky::rgbe;
 use downpour_math::ops::f64 as ops;
+
+/// Name of the sky of wet scenes.
+pub(super) const EVEN: &str = "dim-even";
 
 const SIZE: [u32; 2] = [1024, 512];
 /// Elevation and azimuth of the low sun, degrees, and of the higher one.
@@ -11,11 +14,13 @@ const HIGH: [f64; 2] = [42.0, 200.0];
 const DISK: f64 = 0.7;
 
 /// Names, files and factors.
-pub(super) fn all() -> [(&'static str, Vec<u8>, f64); 4] {
+pub(super) fn all() -> [(&'static str, Vec<u8>, f64); 5] {
     [
         ("low-sun", map(|d| clear(d, LOW, 900.0, [1.0, 0.62, 0.3])), 1.0),
         ("clear", map(|d| clear(d, HIGH, 6000.0, [1.0, 0.95, 0.85])), 1.0),
         ("overcast", map(overcast), 1.0),
+        // Gray: see the signs of the models.
+        (EVEN, map(|_| [0.05; 3]), 1.0),
         ("night", map(|d| clear(d, LOW, 0.0, [1.0; 3]).map(|c| 0.02 * c)), 1.0),
     ]
 }
