@@ -63,6 +63,7 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
         render::medium::MODULES,
         render::pane_shadow::MODULES,
         render::puddle_rings::MODULES,
+        render::puddle_wake::MODULES,
         render::puddle_water::MODULES,
         render::rain::MODULES,
         render::scene::MODULES,

@@ -13,6 +13,7 @@ pub mod medium;
 pub mod pane_shadow;
 pub mod path;
 pub mod puddle_rings;
+pub mod puddle_wake;
 pub mod puddle_water;
 pub mod rain;
 pub mod refine;

@@ -228,7 +228,7 @@ impl SceneBuilder {
 }
 
 /// An instance whose position is relative to `origin`.
-fn relative<'a>(instance: &'a Instance, pose: &Pose, origin: DVec3) -> Cow<'a, Instance> {
+pub(crate) fn relative<'a>(instance: &'a Instance, pose: &Pose, origin: DVec3) -> Cow<'a, Instance> {
     if origin == DVec3::ZERO {
         return Cow::Borrowed(instance);
     }

@@ -30,6 +30,7 @@ use crate::assemble::SceneLooks;
 use crate::data::SceneData;
 use crate::glazing;
 use crate::impostor;
+use crate::sky_light::SkyLight;
 use crate::wet::SceneWetness;
 use downpour_render::RenderError;
 use downpour_render::camera::{EyeMotion, MAX_EXPOSURE_S, PictureEdge, Viewpoint, check_size};
@@ -272,6 +273,12 @@ impl FrameScene {
             frame_scene.viewpoint.fov_y = fov as f32;
         }
         frame_scene.seen_at(weather, loaded, time_s)
+    }
+
+    /// What of the scene stands still, relative to `origin`, without light; all of it if nothing may move.
+    pub(crate) fn standing(&self) -> Cow<'_, SceneData> {
+        let without = |kept: &KeptScene| kept.standing().build(&SkyLight::new(1, 1, &[[0.0; 3]]));
+        self.kept.as_ref().map_or(Cow::Borrowed(&self.data), |kept| Cow::Owned(without(kept)))
     }
 
     /// The part of space that the picture shows, in the world, for [`RainField`](downpour_sim::field::RainField).

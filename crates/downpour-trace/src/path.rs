@@ -300,7 +300,8 @@ impl SceneView<'_> {
                 distance = (hit.distance - met.rise / (-towards.y).max(0.01)).max(near);
                 let position = start + towards * distance;
                 let footprint = cone * distance / (-towards.y).max(0.02).sqrt();
-                let ripple = self.puddle_water_ripple(met.puddle, position, footprint, met.depth, met.open);
+                let ripple = self.puddle_water_ripple(met.puddle, position, footprint, met.depth, met.open)
+                    + self.data.puddle_wake_slope(met.puddle, position, footprint, met.depth);
                 found = path_water_surface(start, towards, distance, ripple);
                 material = PUDDLE_WATER_MATERIAL;
                 water = Some(PathWater {

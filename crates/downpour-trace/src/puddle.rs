@@ -4,10 +4,11 @@
 //!    of their catchments or by a part of their depth, on
 //!    ground whose unevenness may be finer than its model ([`relief`]);
 //! 2. [`WetGround`](crate::wet_ground::WetGround): the maps of a weather, and the ripples of the rain on them, from picture
-//!    to picture, with the [`Rings`] of single drops near the eye;
+//!    to picture, with the [`Rings`] of single drops near the eye and the [`Wakes`] of what moves through them;
 //! 3. [`SceneData::set_puddles`](crate::data::SceneData::set_puddles): both as rows of the scene's table;
 //! 4. [`water`](crate::scene::water): what a ray finds of them, on CPU and GPU.
 
+mod bodies;
 mod error;
 pub mod fill;
 mod map;
@@ -15,7 +16,9 @@ pub mod relief;
 mod rings;
 mod ripples;
 mod rows;
+mod wakes;
 
+pub(crate) use bodies::{Region, moving_triangles};
 pub use error::PuddleError;
 pub use fill::{FillLimits, Filling};
 pub use map::{Ground, PuddleGround, PuddleMap};
@@ -24,3 +27,4 @@ pub use rings::{RainOnWater, RingRows, Rings};
 pub use ripples::{Ripples, slope_levels};
 pub(crate) use rows::RenderPuddle;
 pub use rows::{PuddleLook, PuddleRows};
+pub use wakes::{WakeRows, Wakes};

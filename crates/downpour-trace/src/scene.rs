@@ -10,6 +10,11 @@ pub(crate) mod puddle_rings;
 #[doc(hidden)]
 pub mod puddle_rings;
 #[cfg(not(feature = "parity"))]
+pub(crate) mod puddle_wake;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
+pub mod puddle_wake;
+#[cfg(not(feature = "parity"))]
 pub(crate) mod water;
 #[cfg(feature = "parity")]
 #[doc(hidden)]

@@ -10,7 +10,7 @@ use glam::{DVec3, Vec2, Vec3};
 use crate::frame_scene::FrameScene;
 use crate::puddle::{
     FillLimits, Filling, Ground, PuddleError, PuddleGround, PuddleLook, PuddleMap, PuddleRows, RainOnWater,
-    Relief, RingRows, Rings, Ripples,
+    Region, Relief, RingRows, Rings, Ripples, WakeRows, Wakes, moving_triangles,
 };
 
 /// Mixed into the rain's seed, so that drops on water are not the drops in the air.
@@ -47,6 +47,10 @@ pub struct WetGround {
     rings: Option<Rings>,
     /// Rings of the present picture.
     shown: Option<RingRows>,
+    /// Of a scene that moves: its waves, and for each node whether it moves.
+    wakes: Option<(Wakes, Vec<bool>)>,
+    /// Waves of the present time.
+    waves: Vec<WakeRows>,
 }
 
 impl WetGround {
@@ -71,19 +75,21 @@ impl WetGround {
             (Some(law), Some(rates)) => Ripples::changing(law, rates, seed, first_s)?,
             _ => Ripples::new(law.as_ref(), seed, first_s)?,
         };
-        let ripples = match weather.waves {
-            Waves::Water => ripples,
-            Waves::Membrane(speed) => ripples.with_form(PuddleForm::Membrane { speed_m_s: speed as f32 })?,
+        let form = match weather.waves {
+            Waves::Water => PuddleForm::GravityCapillary,
+            Waves::Membrane(speed) => PuddleForm::Membrane { speed_m_s: speed as f32 },
         };
+        let ripples = if weather.waves == Waves::Water { ripples } else { ripples.with_form(form)? };
         let masks = loaded.masks.iter().map(Option::as_ref).chain(std::iter::repeat(None));
         let (mut puddles, mut filled) = (Vec::new(), Vec::new());
+        // What moves is no ground.
+        let standing = frame_scene.standing();
         for (index, (puddle, mask)) in weather.puddles.iter().zip(masks).enumerate() {
             let ground = ground(puddle, frame_scene);
             let map = match (&puddle.shape, mask) {
                 (&PuddleShape::Found { fill, min_depth, relief, seed, cells }, _) => {
                     let relief = Relief { rms_m: relief as f32, seed };
-                    let ground =
-                        PuddleGround::new(&frame_scene.data, &ground, cells.map(|n| n as usize), &relief);
+                    let ground = PuddleGround::new(&standing, &ground, cells.map(|n| n as usize), &relief);
                     let limits = FillLimits { deepest: puddle.depth as f32, least: min_depth as f32 };
                     let (filling, seepage) = match fill {
                         PuddleFill::Part(_) => (given(weather, index, first_s), None),
@@ -97,24 +103,35 @@ impl WetGround {
                 }
                 (PuddleShape::Painted(_), Some(mask)) => {
                     let size = [mask.width as usize, mask.height as usize];
-                    PuddleMap::painted(&frame_scene.data, &ground, size, &depths(mask, puddle.depth as f32))
+                    PuddleMap::painted(&standing, &ground, size, &depths(mask, puddle.depth as f32))
                 }
                 // A mask that was not loaded: nothing is painted.
-                (PuddleShape::Painted(_), None) => {
-                    PuddleMap::painted(&frame_scene.data, &ground, [2, 2], &[0.0; 4])
-                }
+                (PuddleShape::Painted(_), None) => PuddleMap::painted(&standing, &ground, [2, 2], &[0.0; 4]),
             };
             puddles.push((map, look(puddle, weather.waves)));
         }
+        let wakes = loaded.is_animated().then(|| (Wakes::new(form), loaded.moving_nodes()));
         let (weather, origin) = (weather.clone(), frame_scene.origin);
-        Ok(Some(Self { weather, puddles, filled, origin, ripples, law, rings: None, shown: None }))
+        Ok(Some(Self {
+            weather,
+            puddles,
+            filled,
+            origin,
+            ripples,
+            law,
+            rings: None,
+            shown: None,
+            wakes,
+            waves: Vec::new(),
+        }))
     }
 
-    /// Steps the rain to a time in seconds; times must not decrease.
+    /// Steps the rain, and what moves through the water, to a time in seconds; times must not decrease. `loaded` has the scene of
+    /// [`WetGround::new`].
     ///
     /// # Errors
     /// As [`WetGround::new`].
-    pub fn advance(&mut self, time_s: f64) -> Result<(), PuddleError> {
+    pub fn advance(&mut self, loaded: &Loaded, time_s: f64) -> Result<(), PuddleError> {
         for (index, (_, look)) in self.puddles.iter_mut().enumerate() {
             if let Some(influence) = self.weather.ripple_influence_at(index, time_s) {
                 look.influence = influence as f32;
@@ -129,6 +146,14 @@ impl WetGround {
                 puddle.filling = now;
                 self.puddles[puddle.index].0 = puddle.ground.filled(&now, &puddle.limits);
             }
+        }
+        if let Some((wakes, moves)) = &mut self.wakes {
+            let (weather, origin) = (&self.weather, self.origin);
+            let moving = |time_s: f64, region: &Region| {
+                moving_triangles(&loaded.scene, &loaded.pose(weather, time_s), origin, moves, region)
+            };
+            wakes.advance(time_s, &self.puddles, moving)?;
+            self.waves = wakes.rows(&self.puddles);
         }
         self.ripples.advance(time_s)
     }
@@ -189,6 +214,7 @@ impl WetGround {
             slopes: &self.ripples.slopes(),
             shift: (self.origin - frame_scene.origin).as_vec3(),
             rings: self.shown.as_ref(),
+            wakes: &self.waves,
         });
         #[cfg(feature = "wgpu")]
         {

@@ -215,6 +215,7 @@ fn puddle(look: MaterialLook, depth: f32, sky: f32, lamp: LightSource) -> SceneD
         slopes: &[],
         shift: Vec3::ZERO,
         rings: None,
+        wakes: &[],
     });
     scene
 }
@@ -319,6 +320,7 @@ fn noise_of_water_has_no_pattern_and_changes_with_time() -> Outcome {
         slopes: &slope_levels(finest.collect(), 128),
         shift: Vec3::ZERO,
         rings: None,
+        wakes: &[],
     });
     let (width, height) = (72usize, 56usize);
     let of_time = |k: u32| -> Result<Vec<f64>, Box<dyn std::error::Error>> {

@@ -62,6 +62,7 @@ fn flood(scene: &mut SceneData, depth: f32, look: PuddleLook) {
         slopes: &[],
         shift: Vec3::ZERO,
         rings: None,
+        wakes: &[],
     });
 }
 
@@ -157,6 +158,7 @@ fn rays_end_on_the_surface_of_the_water_in_a_hollow() -> Outcome {
         slopes: &[],
         shift: Vec3::ZERO,
         rings: None,
+        wakes: &[],
     });
     let eye = Vec3::new(0.3, 1.0, 1.5);
     let view = Viewpoint { eye, forward: -eye, up: Vec3::Y, fov_y: 0.2 };
@@ -197,6 +199,7 @@ fn water_is_laid_anew() {
         slopes: &[],
         shift: Vec3::ZERO,
         rings: None,
+        wakes: &[],
     });
     assert_eq!((scene.table.len(), scene.puddle_count), (dry, 0));
 }

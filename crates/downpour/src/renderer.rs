@@ -194,8 +194,7 @@ impl Renderer {
         let mut shower = Shower::new(&weather)?;
         let masks = set_weather::masks(&weather, &loaded, &shower, &options)?;
         if !loaded.is_animated() {
-            // The files have become buffers.
-            loaded.scene = Scene::default();
+            forget_meshes(&mut loaded.scene);
         } else if shower.has_drips() {
             shower.find_drips(&FrameScene::new(&weather, &loaded, 0.0)?)?;
         }
@@ -385,7 +384,7 @@ impl Renderer {
         if !self.weather.puddles.is_empty() {
             self.water_at(time_s)?;
             if let Some(ground) = self.water.as_mut().and_then(|water| water.ground.as_mut()) {
-                ground.advance(time_s)?;
+                ground.advance(&self.loaded, time_s)?;
             }
         }
         if !self.shower.can_seek() {
@@ -450,9 +449,10 @@ impl Renderer {
         }
         told(Progress { what: "rain on puddles and glass", parts: [0; 2] });
         let field = self.shower.on_water().cloned();
-        let water = self.water_at(time_s)?;
+        self.water_at(time_s)?;
+        let Some(water) = &mut self.water else { return Ok(frame_scene) };
         if let Some(ground) = &mut water.ground {
-            ground.advance(time_s)?;
+            ground.advance(&self.loaded, time_s)?;
             if let Some(field) = &field {
                 ground.find_rings(field, &frame_scene, time_s)?;
             }
@@ -596,6 +596,11 @@ fn rain_on(pane: &mut WetPane, time_s: f64, told: &mut dyn FnMut(Progress)) -> R
         }
     }
     Ok(pane.advance(time_s)?)
+}
+
+/// Forgets what of a scene that stands still has become buffers; materials are asked for by name at any time.
+fn forget_meshes(scene: &mut Scene) {
+    *scene = Scene { materials: std::mem::take(&mut scene.materials), ..Scene::default() };
 }
 
 /// The pane that a picture is seen through.

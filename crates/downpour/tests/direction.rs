@@ -261,3 +261,48 @@ fn the_total_extinction_is_twice_that_of_a_camera() {
     let (camera, total) = (extinction("camera"), extinction("total"));
     assert!(camera > 1.0e-3 && (total / camera - 2.0).abs() < 1.0e-6, "{camera}, {total}");
 }
+
+/// A car that drives through a puddle without rain; `influence` is that of waves.
+fn driven(influence: &str) -> String {
+    format!(
+        "
+model = [
+    {{ file = \"floor.gltf\" }},
+    {{ file = \"car.glb\", translation_m = [[0, [-14, 0, -6]], [2, [10, 0, -6]]] }},
+]
+[rain]
+rate_mm_h = 0
+[[light]]
+point = {{ position_m = [0.5, 3, -10], intensity_cd = 200 }}
+[camera]
+position_m = [0, 1.5, 0]
+look_at_m = [0, 0, -6]
+fov_deg = 35
+[[puddle]]
+position_m = [0, 0, -6]
+size_m = [8, 4]
+fill = 1
+relief_mm = 4
+cell_mm = 50
+ripple_influence = {influence}
+[output]
+size = [48, 27]
+"
+    )
+}
+
+/// A car leaves waves in the puddle that it drove through, the same in a frame alone as in a clip.
+#[test]
+fn a_car_leaves_waves_in_a_puddle() {
+    let frames = |text: &str, times: &[f64]| -> Vec<[u32; 3]> {
+        let mut renderer = renderer(text, times[0]);
+        renderer.set_exposure(Some(1.0));
+        times.iter().map(|&time| bits(&renderer.frame(time).unwrap())).last().unwrap()
+    };
+    // The car is past the picture then.
+    let waves = frames(&driven("1"), &[0.0, 0.5, 1.0, 1.5, 1.9]);
+    assert!(waves == frames(&driven("1"), &[1.9]));
+    let level = frames(&driven("0"), &[1.9]);
+    let changed = waves.iter().zip(&level).filter(|(a, b)| a != b).count();
+    assert!((10..1200).contains(&changed), "{changed} pixels");
+}

@@ -2,6 +2,7 @@
 
 use super::glazing::GLAZING;
 use super::impostor::IMPOSTOR;
+use super::puddle_wake::PUDDLE_WAKE;
 use super::puddle_water::PUDDLE_WATER;
 use super::scatter::SCATTER;
 use super::scene::{DATA, SCENE, SKY, SURFACE};
@@ -111,6 +112,7 @@ pub static PATH: Module = Module {
         &SKY,
         &SURFACE,
         &PUDDLE,
+        &PUDDLE_WAKE,
         &PUDDLE_WATER,
         &OPTICS,
         &WET,

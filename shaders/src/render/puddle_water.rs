@@ -13,7 +13,7 @@ shared_constants! {
     /// Numbers of puddles in pictures.
     PUDDLE_WATER_CONSTANTS at "render/puddle_water constants" {
         /// Rows of a puddle in the scene's table.
-        PUDDLE_WATER_ROWS: u32 = 6;
+        PUDDLE_WATER_ROWS: u32 = 7;
         /// Most puddles of a scene.
         PUDDLE_WATER_MAX_COUNT: u32 = 16;
         /// Says that there is no water.

@@ -629,7 +629,8 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                         distance = max(hit.distance - water.rise / max(-towards.y, 0.01), near);
                         let position = start + towards * distance;
                         let footprint = cone * distance / sqrt(max(-towards.y, 0.02));
-                        ripple = puddle_water_ripple(water.puddle, position, footprint, water.depth, water.open);
+                        ripple = puddle_water_ripple(water.puddle, position, footprint, water.depth, water.open)
+                            + puddle_wake_slope(water.puddle, position, footprint, water.depth);
                         found = path_water_surface(start, towards, distance, ripple);
                     }
                     if SCENE_WET && under {

@@ -6,6 +6,7 @@ use downpour_math::ops;
 use downpour_math::rng::{rng_pcg4d, rng_unit};
 use downpour_render::light::LightSource;
 use downpour_shaders::render::puddle_rings::PUDDLE_RINGS;
+use downpour_shaders::render::puddle_wake::PUDDLE_WAKE;
 use downpour_shaders::render::puddle_water::PUDDLE_WATER;
 use downpour_shaders::render::scene::TRACE_KERNEL;
 use downpour_sim::field::RainField;
@@ -13,9 +14,10 @@ use downpour_trace::builder::{MeshPart, SceneBuilder};
 use downpour_trace::data::SceneData;
 use downpour_trace::material::MaterialLook;
 use downpour_trace::puddle::{
-    Ground, PuddleLook, PuddleMap, PuddleRows, RainOnWater, RingRows, Rings, slope_levels,
+    Ground, PuddleLook, PuddleMap, PuddleRows, RainOnWater, RingRows, Rings, WakeRows, slope_levels,
 };
 use downpour_trace::scene::puddle_rings::puddle_rings_shown;
+use downpour_trace::scene::puddle_wake::puddle_wake_shown;
 use downpour_trace::scene::water::{
     puddle_water_above, puddle_water_albedo, puddle_water_beneath, puddle_water_entry, puddle_water_mirrored,
     puddle_water_normal, puddle_water_reflectance, puddle_water_refracted,
@@ -58,6 +60,13 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &[Uniform(-6.0, 6.0), Uniform(-6.0, 6.0), Uniform(3.0, 9.0), Uniform(0.0, 0.02)],
             Tol::absolute(1.0e-5, "a root and two quotients (2.5 ulp each), times the slope of a cubic"),
             |a| puddle_rings_shown(Vec2::from(a.f32s()), a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "puddle_wake_shown",
+            &PUDDLE_WAKE,
+            &[Uniform(0.0, 8.0)],
+            Tol::absolute(1.0e-5, "a quotient (2.5 ulp), times the slope of a cubic"),
+            |a| puddle_wake_shown(a.f32()).words(),
         ),
         FunctionCase::new("puddle_water_mirrored", &PUDDLE_WATER, &[Unit3, Unit3], DIRECTION, |a| {
             puddle_water_mirrored(vec3(a), vec3(a)).to_array().words()
@@ -155,7 +164,21 @@ fn case_rings(gpu: &Gpu) -> Result<Run, GpuError> {
     let on_water = RainOnWater { field: &field, sizes: None, time_s: 2.3, eye: eye.as_dvec3() };
     let rings = Rings::new(&rain).and_then(|mut rings| rings.find(&on_water, &puddles, DVec3::ZERO));
     let rings = rings.expect("rings");
-    water_with(gpu, builder.build(&sky), &puddles, eye, 1, Some(&rings))
+    water_with(gpu, builder.build(&sky), &puddles, eye, 1, (Some(&rings), &[]))
+}
+
+/// The puddles from near and far, with waves of what moved through both.
+fn case_wakes(gpu: &Gpu) -> Result<Run, GpuError> {
+    let wake = |puddle: usize, size: [usize; 2], cell_m: f32| {
+        let slope = |i: usize| {
+            let [x, y] = [i % size[0], i / size[0]].map(|at| at as f32 * cell_m);
+            let [a, b] = [0.2 * ops::sin(9.0 * x + 4.0 * y), 0.15 * ops::cos(7.0 * y - 5.0 * x)];
+            [a, b, 0.8 * (a * a + b * b) + 0.002, 0.0]
+        };
+        WakeRows { puddle, size, cell_m, slopes: (0..size[0] * size[1]).map(slope).collect() }
+    };
+    let wakes = [wake(0, [64, 70], 0.05), wake(1, [30, 34], 0.09)];
+    water_with(gpu, scene(), &maps(), Vec3::new(-0.4, 1.2, 2.6), 1, (None, &wakes))
 }
 
 fn case(gpu: &Gpu, eye: Vec3, sky_rays: u32) -> Result<Run, GpuError> {
@@ -175,29 +198,33 @@ fn water(
     eye: Vec3,
     sky_rays: u32,
 ) -> Result<Run, GpuError> {
-    water_with(gpu, scene, puddles, eye, sky_rays, None)
+    water_with(gpu, scene, puddles, eye, sky_rays, (None, &[]))
 }
 
-/// The same, with rings of single drops.
+/// The same, with rings of single drops and wakes.
 fn water_with(
     gpu: &Gpu,
     mut scene: SceneData,
     puddles: &[(PuddleMap, PuddleLook)],
     eye: Vec3,
     sky_rays: u32,
-    rings: Option<&RingRows>,
+    moved: (Option<&RingRows>, &[WakeRows]),
 ) -> Result<Run, GpuError> {
-    lay(&mut scene, puddles, rings);
+    lay(&mut scene, puddles, moved);
     picture(gpu, &scene, eye, sky_rays)
 }
 
 /// Lays the puddles of the cases on the ground of the scene of the other cases.
 pub(super) fn laid(scene: &mut SceneData) {
-    lay(scene, &maps(), None);
+    lay(scene, &maps(), (None, &[]));
 }
 
 /// Lays puddles with ripples on a scene.
-fn lay(scene: &mut SceneData, puddles: &[(PuddleMap, PuddleLook)], rings: Option<&RingRows>) {
+fn lay(
+    scene: &mut SceneData,
+    puddles: &[(PuddleMap, PuddleLook)],
+    (rings, wakes): (Option<&RingRows>, &[WakeRows]),
+) {
     let finest = (0..128 * 128u32).map(|i| {
         let [a, b, ..] = rng_pcg4d([i, 4, 5, 6]).map(|word| rng_unit(word) - 0.5);
         let [x, y] = [(i % 128) as f32, (i / 128) as f32];
@@ -210,6 +237,7 @@ fn lay(scene: &mut SceneData, puddles: &[(PuddleMap, PuddleLook)], rings: Option
         slopes: &slope_levels(finest.collect(), 128),
         shift: Vec3::ZERO,
         rings,
+        wakes,
     });
 }
 
@@ -231,6 +259,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         case("main_trace: puddles from afar", case_far),
         case("main_trace: water on a bank", case_bank),
         case("main_trace: rings of drops on a pool", case_rings),
+        case("main_trace: wakes in puddles", case_wakes),
     ]
 }
 

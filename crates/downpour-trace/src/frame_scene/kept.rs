@@ -33,10 +33,16 @@ impl KeptScene {
         Self { looks, still, moves, origin }
     }
 
-    /// Builder of the scene in a pose, with all of its meshes.
-    pub(super) fn builder(&self, loaded: &Loaded, pose: &Pose) -> SceneBuilder {
+    /// Builder of what stands still.
+    pub(super) fn standing(&self) -> SceneBuilder {
         let mut builder = self.looks.builder();
         builder.set_still(self.still.clone());
+        builder
+    }
+
+    /// Builder of the scene in a pose, with all of its meshes.
+    pub(super) fn builder(&self, loaded: &Loaded, pose: &Pose) -> SceneBuilder {
+        let mut builder = self.standing();
         builder.add_meshes(&self.looks, &loaded.scene, pose, self.origin, |node| {
             self.moves.get(node) == Some(&true)
         });

@@ -35,6 +35,19 @@ pub struct Ground {
     pub reach: f32,
 }
 
+/// Water at a place of a map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct WaterAt {
+    /// Height of the model's ground over the map's middle, m.
+    pub(super) ground: f32,
+    /// Height of the surface over the map's middle, m.
+    pub(super) level: f32,
+    /// m.
+    pub(super) depth: f32,
+    /// Fraction of the rain that arrives.
+    pub(super) open: f32,
+}
+
 /// Depths of water over a rectangle of the ground.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PuddleMap {
@@ -162,6 +175,25 @@ impl PuddleMap {
             }
         };
         Self { ground: *ground, size, cells: model.iter().zip(&open).zip(depths).map(cell).collect() }
+    }
+
+    /// Where a position is, m from the map's corner along its axes; `turn` is the map's.
+    pub(super) fn place(&self, turn: Vec2, position: Vec3) -> Vec2 {
+        let away = position - self.ground.middle;
+        let away = Vec2::new(away.x, away.z);
+        Vec2::new(away.dot(turn), away.dot(turn.perp())) + 0.5 * self.ground.size
+    }
+
+    /// The water at a place, m from the map's corner along its axes; `None` on land and beyond the map.
+    pub(super) fn water_at(&self, place: Vec2) -> Option<WaterAt> {
+        let [columns, rows] = self.size;
+        let part = place / self.ground.size;
+        let cell = |part: f32, count: usize| {
+            (0.0..1.0).contains(&part).then(|| ((part * count as f32) as usize).min(count - 1))
+        };
+        let index = cell(part.y, rows)? * columns + cell(part.x, columns)?;
+        let [ground, rise, depth, open] = *self.cells.get(index)?;
+        (depth >= PUDDLE_WATER_MIN_DEPTH).then_some(WaterAt { ground, level: ground + rise, depth, open })
     }
 
     /// Area under water, m^2.

@@ -355,16 +355,8 @@ impl PuddleMap {
     /// Height of the water's surface over that of the map's middle at a position (m), and the fraction of the rain that arrives there;
     /// `None` on land. `turn` is the map's.
     fn surface(&self, turn: Vec2, position: Vec3) -> Option<[f32; 2]> {
-        let away = position - self.ground.middle;
-        let along = Vec2::new(away.x, away.z).dot(turn) / self.ground.size.x + 0.5;
-        let across = Vec2::new(away.x, away.z).dot(turn.perp()) / self.ground.size.y + 0.5;
-        let [columns, rows] = self.size;
-        let cell = |part: f32, count: usize| {
-            (0.0..1.0).contains(&part).then(|| ((part * count as f32) as usize).min(count - 1))
-        };
-        let index = cell(across, rows)? * columns + cell(along, columns)?;
-        let [ground, rise, depth, open] = *self.cells.get(index)?;
-        (depth >= PUDDLE_WATER_MIN_DEPTH).then_some([ground + rise, open])
+        let water = self.water_at(self.place(turn, position))?;
+        Some([water.level, water.open])
     }
 }
 
@@ -386,6 +378,11 @@ impl RingRows {
             [first, self.part.to_bits(), (REACH_M as f32).to_bits(), 0],
             [corner.x, corner.y, middle.x, middle.y].map(f32::to_bits),
         ]
+    }
+
+    /// Number of rows that [`RingRows::extend`] adds.
+    pub(super) fn rows(&self) -> usize {
+        self.slopes.len() + self.cells.len().div_ceil(4) + MAX_RINGS / 2
     }
 
     /// Adds the rows of slopes, cells and rings: as many for any number of rings.
@@ -431,6 +428,7 @@ mod tests {
             slopes,
             shift: Vec3::ZERO,
             rings: Some(rings),
+            wakes: &[],
         });
         scene
     }

@@ -6,6 +6,7 @@ use glam::{Vec2, Vec3, Vec4};
 
 use super::map::{PuddleMap, turned};
 use super::rings::RingRows;
+use super::wakes::WakeRows;
 use crate::data::SceneData;
 
 /// Appearance of a puddle.
@@ -62,6 +63,8 @@ pub struct PuddleRows<'a> {
     pub shift: Vec3,
     /// Rings of single drops near the eye.
     pub rings: Option<&'a RingRows>,
+    /// Waves of what moves through some of the puddles.
+    pub wakes: &'a [WakeRows],
 }
 
 /// Water on the ground as the shaders read it. Twin of the WGSL struct of the same name.
@@ -158,6 +161,10 @@ impl SceneData {
         let words = |numbers: [f32; 4]| numbers.map(f32::to_bits);
         let head = puddles.len() * PUDDLE_WATER_ROWS as usize + 1 + PUDDLE_RINGS_ROWS as usize;
         let mut first = self.puddles + head as u32;
+        // Behind all that is there without wakes.
+        let maps: usize = puddles.iter().map(|(map, _)| map.cells.len()).sum();
+        let rings = rows.rings.map_or(0, RingRows::rows);
+        let mut first_wake = first + (maps + rows.slopes.len() + rings) as u32;
         for (k, (map, look)) in (0u16..).zip(puddles) {
             let middle = map.ground.middle + rows.shift;
             let turn = turned(map.ground.turn);
@@ -178,6 +185,14 @@ impl SceneData {
                 ]),
                 words([look.rippling_depth, own.x, own.y, if look.has_rings() { 1.0 } else { 0.0 }]),
             ]);
+            self.table.push(match rows.wakes.iter().find(|wake| wake.puddle == usize::from(k)) {
+                Some(wake) => {
+                    let row = [wake.size[0] as u32, wake.size[1] as u32, first_wake, wake.cell_m.to_bits()];
+                    first_wake += wake.slopes.len() as u32;
+                    row
+                }
+                None => [0; 4],
+            });
             first += map.cells.len() as u32;
         }
         let (size, levels, cell) = rows.shape;
@@ -193,6 +208,10 @@ impl SceneData {
         self.table.extend(rows.slopes.iter().map(|&slope| words(slope)));
         if let Some(rings) = rows.rings {
             rings.extend(&mut self.table);
+        }
+        for k in 0..puddles.len() {
+            let wake = rows.wakes.iter().find(|wake| wake.puddle == k);
+            self.table.extend(wake.into_iter().flat_map(|wake| &wake.slopes).map(|&slope| words(slope)));
         }
     }
 }

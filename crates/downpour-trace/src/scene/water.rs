@@ -281,6 +281,7 @@ mod tests {
             slopes: &slope_levels(finest, usize::from(size)),
             shift: Vec3::ZERO,
             rings: None,
+            wakes: &[],
         });
         let view = Viewpoint { eye: Vec3::Y, forward: Vec3::NEG_Y, up: Vec3::X, fov_y: 1.0 };
         let frame = RenderFrame::new(&scene, &view, [1, 1], 1, 0, 0).unwrap();

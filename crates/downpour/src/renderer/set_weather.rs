@@ -6,11 +6,10 @@ use downpour_math::ops;
 use downpour_render::rain::DropMasks;
 use downpour_scene::Budget;
 use downpour_scene::sandbox::Files;
-use downpour_scene::scene::Scene;
 use downpour_trace::frame_scene::FrameScene;
 use downpour_weather::Weather;
 
-use super::{Renderer, RendererError, RendererOptions, atlas_of};
+use super::{Renderer, RendererError, RendererOptions, atlas_of, forget_meshes};
 use crate::shower::Shower;
 
 impl Renderer {
@@ -46,7 +45,7 @@ impl Renderer {
         }
         let masks = self.masks_of(&weather, &loaded, &shower, &options)?;
         if !loaded.is_animated() {
-            loaded.scene = Scene::default();
+            forget_meshes(&mut loaded.scene);
         }
         // All is well: from here on nothing fails.
         let is_water_alike = !reloaded.models && holds_water_alike(before, &weather);
