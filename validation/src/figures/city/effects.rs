@@ -26,7 +26,7 @@ const HOLLOW_VIEW: &str =
     "[camera]\nposition_m = [0.9, 0.9, -15.6]\nlook_at_m = [0.95, 0.02, -18.2]\nfov_deg = 40\n";
 
 /// All of them.
-pub(super) const EFFECTS: [Effect; 18] = [
+pub(super) const EFFECTS: [Effect; 19] = [
     Effect {
         name: "rain",
         title: "Drops, streaks and unresolved rain",
@@ -96,6 +96,17 @@ pub(super) const EFFECTS: [Effect; 18] = [
         both: HOLLOW_VIEW,
         off: "[[puddle]]\nposition_m = [0.96, 0.05, -18.38]\nsize_m = [1.73, 3.60]\nfill = 1\nrelief_mm = 1.2\nripple_influence = 0\n",
         on: "[[puddle]]\nposition_m = [0.96, 0.05, -18.38]\nsize_m = [1.73, 3.60]\nfill = 1\nrelief_mm = 1.2\n",
+    },
+    Effect {
+        name: "wakes",
+        title: "Waves behind wheels",
+        base: "drive.toml",
+        time_s: "5.8",
+        without: &["puddle"],
+        both: "[rain]\nrate_mm_h = 0\n[wetness]\nwetness = 1\n\
+               [camera]\nposition_m = [-2.3, 1.1, -8.2]\nlook_at_m = [-0.8, 0.1, -12.6]\nfov_deg = 40\n",
+        off: "[[puddle]]\nposition_m = [-0.95, 0.05, -12]\nsize_m = [3.4, 9]\nmask = \"pavement_puddle.png\"\ndepth_mm = 15\nripple_influence = 0\n",
+        on: "[[puddle]]\nposition_m = [-0.95, 0.05, -12]\nsize_m = [3.4, 9]\nmask = \"pavement_puddle.png\"\ndepth_mm = 15\n",
     },
     Effect {
         name: "splashes",
