@@ -200,6 +200,17 @@ impl Puddle {
         self.rows(&self.state.heights)
     }
 
+    /// Height over the level of the cell at a position, m from the corner of the lattice; beyond it that of the nearest.
+    #[must_use]
+    pub fn height_at(&self, position_m: [f32; 2]) -> f32 {
+        let options = self.options();
+        let cell = |axis: usize| {
+            let cell = (position_m[axis] / options.cell_m) as usize;
+            cell.min(options.size[axis] as usize - 1)
+        };
+        self.state.heights.get(cell(1) * self.model.links.stride() + cell(0))
+    }
+
     /// Velocities of the surface, m/s, half a time step before the heights.
     #[must_use]
     pub fn velocities(&self) -> Vec<f32> {

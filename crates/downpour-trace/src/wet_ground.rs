@@ -10,7 +10,7 @@ use glam::{DVec3, Vec2, Vec3};
 use crate::frame_scene::FrameScene;
 use crate::puddle::{
     FillLimits, Filling, Ground, PuddleError, PuddleGround, PuddleLook, PuddleMap, PuddleRows, RainOnWater,
-    Region, Relief, RingRows, Rings, Ripples, WakeRows, Wakes, moving_triangles,
+    Region, Relief, RingRows, Rings, Ripples, Wakes, moving_triangles,
 };
 
 /// Mixed into the rain's seed, so that drops on water are not the drops in the air.
@@ -49,8 +49,6 @@ pub struct WetGround {
     shown: Option<RingRows>,
     /// Of a scene that moves: its waves, and for each node whether it moves.
     wakes: Option<(Wakes, Vec<bool>)>,
-    /// Waves of the present time.
-    waves: Vec<WakeRows>,
 }
 
 impl WetGround {
@@ -112,18 +110,7 @@ impl WetGround {
         }
         let wakes = loaded.is_animated().then(|| (Wakes::new(form), loaded.moving_nodes()));
         let (weather, origin) = (weather.clone(), frame_scene.origin);
-        Ok(Some(Self {
-            weather,
-            puddles,
-            filled,
-            origin,
-            ripples,
-            law,
-            rings: None,
-            shown: None,
-            wakes,
-            waves: Vec::new(),
-        }))
+        Ok(Some(Self { weather, puddles, filled, origin, ripples, law, rings: None, shown: None, wakes }))
     }
 
     /// Steps the rain, and what moves through the water, to a time in seconds; times must not decrease. `loaded` has the scene of
@@ -153,7 +140,6 @@ impl WetGround {
                 moving_triangles(&loaded.scene, &loaded.pose(weather, time_s), origin, moves, region)
             };
             wakes.advance(time_s, &self.puddles, moving)?;
-            self.waves = wakes.rows(&self.puddles);
         }
         self.ripples.advance(time_s)
     }
@@ -214,7 +200,7 @@ impl WetGround {
             slopes: &self.ripples.slopes(),
             shift: (self.origin - frame_scene.origin).as_vec3(),
             rings: self.shown.as_ref(),
-            wakes: &self.waves,
+            wakes: &self.wakes.as_ref().map_or_else(Vec::new, |(wakes, _)| wakes.rows(&self.puddles)),
         });
         #[cfg(feature = "wgpu")]
         {

@@ -1,6 +1,6 @@
 //! What moves and may reach into water: its triangles.
 
-use downpour_scene::scene::{Instance, Pose, Primitive, Scene, skin_primitive};
+use downpour_scene::scene::{Bounds, Instance, Pose, Primitive, Scene, skin_primitive};
 use glam::{DVec3, Vec3};
 
 use crate::assemble::relative;
@@ -37,12 +37,7 @@ fn may_reach(primitive: &Primitive, instance: &Instance, [low, high]: &Region) -
     if primitive.is_skinned() || !primitive.morphs.is_empty() {
         return true;
     }
-    let [least, most] = [primitive.bounds.min, primitive.bounds.max];
-    let corner = |k: usize| {
-        let pick = |axis: usize| if k >> axis & 1 == 0 { least[axis] } else { most[axis] };
-        instance.world.transform_point3(Vec3::new(pick(0), pick(1), pick(2)))
-    };
-    let begin = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-    let (from, to) = (0..8).map(corner).fold(begin, |(from, to), at| (from.min(at), to.max(at)));
-    from.cmple(*high).all() && to.cmpge(*low).all()
+    let corners = primitive.bounds.corners().map(|corner| instance.world.transform_point3(corner));
+    let Bounds { min, max } = Bounds::of(&corners);
+    min.cmple(*high).all() && max.cmpge(*low).all()
 }

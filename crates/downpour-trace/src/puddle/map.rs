@@ -3,7 +3,7 @@
 use downpour_math::ops;
 use downpour_shaders::bvh::BVH_FAR;
 use downpour_shaders::render::puddle_water::PUDDLE_WATER_MIN_DEPTH;
-use glam::{Vec2, Vec3};
+use glam::{DVec2, Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::fill::{Basin, FillLimits, Filling, Hollows, basins, fill};
@@ -61,6 +61,13 @@ pub struct PuddleMap {
 }
 
 impl Ground {
+    /// Half the edges of the box along x and z that the rectangle is in, m.
+    pub(super) fn extent(&self) -> DVec2 {
+        let half = 0.5 * self.size.as_dvec2();
+        let turn = turned(self.turn).as_dvec2().abs();
+        DVec2::new(half.x * turn.x + half.y * turn.y, half.x * turn.y + half.y * turn.x)
+    }
+
     /// The position over a part of the rectangle, 0 to 1 along its edges, at its middle's height.
     pub(super) fn position(&self, u: f32, v: f32) -> Vec3 {
         let turn = turned(self.turn);

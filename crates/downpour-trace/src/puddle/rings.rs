@@ -322,9 +322,7 @@ fn area_near(map: &PuddleMap, middle: Vec2) -> f64 {
 /// Squares of the world and spans of time in which drops come through the water of puddle `k` that make rings in a picture, each with
 /// the corners of the part that the puddle covers, and the height, m.
 fn blocks(k: usize, map: &PuddleMap, origin: DVec3, rain: &RainOnWater<'_>) -> Vec<(Block, [DVec2; 2], f64)> {
-    let half = 0.5 * map.ground.size.as_dvec2();
-    let turn = turned(map.ground.turn).as_dvec2().abs();
-    let extent = DVec2::new(half.x * turn.x + half.y * turn.y, half.x * turn.y + half.y * turn.x);
+    let extent = map.ground.extent();
     let middle = origin + map.ground.middle.as_dvec3();
     let height = middle.y;
     let (middle, eye) = (DVec2::new(middle.x, middle.z), DVec2::new(rain.eye.x, rain.eye.z));
@@ -378,11 +376,6 @@ impl RingRows {
             [first, self.part.to_bits(), (REACH_M as f32).to_bits(), 0],
             [corner.x, corner.y, middle.x, middle.y].map(f32::to_bits),
         ]
-    }
-
-    /// Number of rows that [`RingRows::extend`] adds.
-    pub(super) fn rows(&self) -> usize {
-        self.slopes.len() + self.cells.len().div_ceil(4) + MAX_RINGS / 2
     }
 
     /// Adds the rows of slopes, cells and rings: as many for any number of rings.

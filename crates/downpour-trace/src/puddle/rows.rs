@@ -1,6 +1,7 @@
 //! Puddles as rows of the scene's table. Twin of `shaders/wgsl/render/puddle.wgsl`.
 
 use downpour_shaders::render::puddle_rings::PUDDLE_RINGS_ROWS;
+use downpour_shaders::render::puddle_wake::PUDDLE_WAKE_ROW;
 use downpour_shaders::render::puddle_water::{PUDDLE_WATER_MAX_COUNT, PUDDLE_WATER_ROWS};
 use glam::{Vec2, Vec3, Vec4};
 
@@ -161,10 +162,6 @@ impl SceneData {
         let words = |numbers: [f32; 4]| numbers.map(f32::to_bits);
         let head = puddles.len() * PUDDLE_WATER_ROWS as usize + 1 + PUDDLE_RINGS_ROWS as usize;
         let mut first = self.puddles + head as u32;
-        // Behind all that is there without wakes.
-        let maps: usize = puddles.iter().map(|(map, _)| map.cells.len()).sum();
-        let rings = rows.rings.map_or(0, RingRows::rows);
-        let mut first_wake = first + (maps + rows.slopes.len() + rings) as u32;
         for (k, (map, look)) in (0u16..).zip(puddles) {
             let middle = map.ground.middle + rows.shift;
             let turn = turned(map.ground.turn);
@@ -185,14 +182,8 @@ impl SceneData {
                 ]),
                 words([look.rippling_depth, own.x, own.y, if look.has_rings() { 1.0 } else { 0.0 }]),
             ]);
-            self.table.push(match rows.wakes.iter().find(|wake| wake.puddle == usize::from(k)) {
-                Some(wake) => {
-                    let row = [wake.size[0] as u32, wake.size[1] as u32, first_wake, wake.cell_m.to_bits()];
-                    first_wake += wake.slopes.len() as u32;
-                    row
-                }
-                None => [0; 4],
-            });
+            // No wakes, as far as it is known yet.
+            self.table.push([0; 4]);
             first += map.cells.len() as u32;
         }
         let (size, levels, cell) = rows.shape;
@@ -209,9 +200,11 @@ impl SceneData {
         if let Some(rings) = rows.rings {
             rings.extend(&mut self.table);
         }
-        for k in 0..puddles.len() {
-            let wake = rows.wakes.iter().find(|wake| wake.puddle == k);
-            self.table.extend(wake.into_iter().flat_map(|wake| &wake.slopes).map(|&slope| words(slope)));
+        for wake in rows.wakes.iter().filter(|wake| wake.puddle < puddles.len()) {
+            let [columns, lines] = wake.size.map(|count| count as u32);
+            let row = self.puddles + wake.puddle as u32 * PUDDLE_WATER_ROWS + PUDDLE_WAKE_ROW;
+            self.table[row as usize] = [columns, lines, self.table.len() as u32, wake.cell_m.to_bits()];
+            self.table.extend(wake.slopes.iter().map(|&slope| words(slope)));
         }
     }
 }

@@ -185,15 +185,15 @@ impl Basin {
     fn step(&mut self, bodies: Vec<Body>) -> Result<(), PuddleError> {
         let mut before = std::mem::take(&mut self.bodies);
         // Waves before this step say how much water is in a body's way.
-        let heights = if bodies.is_empty() || self.is_level { Vec::new() } else { self.water.heights() };
-        for body in &bodies {
+        let heights: Vec<f32> = bodies.iter().map(|body| self.water.height_at(body.at.to_array())).collect();
+        for (body, height) in bodies.iter().zip(heights) {
             let way = |(_, other): &(usize, &Body)| body.at.distance(other.at);
             let nearest = before.iter().enumerate().min_by(|a, b| way(a).total_cmp(&way(b)));
             if let Some((number, from)) = nearest.map(|(number, other)| (number, other.at))
                 && from.distance(body.at) < MAX_MOVE_M
             {
                 before.swap_remove(number);
-                self.displace(body, from, &heights)?;
+                self.displace(body, from, height)?;
             }
         }
         self.bodies = bodies;
@@ -203,8 +203,8 @@ impl Basin {
         Ok(())
     }
 
-    /// Moves a body from a position to its own.
-    fn displace(&mut self, body: &Body, from: Vec2, heights: &[f32]) -> Result<(), PuddleError> {
+    /// Moves a body from a position to its own, where the water has a height over its level, m.
+    fn displace(&mut self, body: &Body, from: Vec2, height: f32) -> Result<(), PuddleError> {
         let options = self.water.options();
         let (cell, depth) = (options.cell_m, options.depth_m);
         let way = body.at - from;
@@ -215,8 +215,6 @@ impl Basin {
         self.is_level = false;
         let radius = body.radius.max(2.001 * cell);
         // With what waves have taken away or brought.
-        let column = (body.at / cell).as_uvec2().min(glam::UVec2::from(options.size) - 1);
-        let height = heights.get((column.y * options.size[0] + column.x) as usize).copied().unwrap_or(0.0);
         let draft = body.draft.min(depth + height).clamp(0.0, depth);
         let speed = distance / STEP_S as f32;
         // Of the longest waves.
@@ -268,9 +266,7 @@ fn cell_of(map: &PuddleMap) -> f32 {
 
 /// The box in which a puddle's water is; `None` without water.
 fn region(map: &PuddleMap) -> Option<Region> {
-    let half = 0.5 * map.ground.size;
-    let turn = turned(map.ground.turn).abs();
-    let reach = Vec2::new(half.x * turn.x + half.y * turn.y, half.x * turn.y + half.y * turn.x);
+    let reach = map.ground.extent().as_vec2();
     let wet = map.cells.iter().filter(|cell| cell[2] >= PUDDLE_WATER_MIN_DEPTH);
     let heights = wet.map(|cell| [cell[0] - cell[2], cell[0] + cell[1]]);
     let [low, high] = heights.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])?;
@@ -334,18 +330,19 @@ fn bodies(map: &PuddleMap, region: &Region, triangles: &[[Vec3; 3]]) -> Vec<Body
 
 /// Means over the cells around each.
 fn smoothed(values: &[f32], [columns, lines]: [usize; 2]) -> Vec<f32> {
-    let mean =
-        |values: &[f32], from: &dyn Fn(usize, usize) -> usize, count: usize, at: usize, line: usize| {
-            let near = at.saturating_sub(AROUND)..(at + AROUND + 1).min(count);
-            let number = near.len() as f32;
-            near.map(|k| values[from(k, line)]).sum::<f32>() / number
-        };
-    let along: Vec<f32> = (0..columns * lines)
-        .map(|i| mean(values, &|x, y| y * columns + x, columns, i % columns, i / columns))
-        .collect();
-    (0..columns * lines)
-        .map(|i| mean(&along, &|y, x| y * columns + x, lines, i / columns, i % columns))
-        .collect()
+    let along = averaged(values, columns, 1);
+    averaged(&along, lines, columns)
+}
+
+/// Means along one axis, of `count` cells that are `stride` values apart.
+fn averaged(values: &[f32], count: usize, stride: usize) -> Vec<f32> {
+    let mean = |i: usize| {
+        let at = i / stride % count;
+        let near = at.saturating_sub(AROUND)..(at + AROUND + 1).min(count);
+        let number = near.len() as f32;
+        near.map(|k| values[i - at * stride + k * stride]).sum::<f32>() / number
+    };
+    (0..values.len()).map(mean).collect()
 }
 
 /// Number of the step that ends at or before a time, from time 0.

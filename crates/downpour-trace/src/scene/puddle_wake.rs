@@ -8,6 +8,7 @@ use downpour_shaders::render::puddle_wake::{PUDDLE_WAKE_COARSE, PUDDLE_WAKE_FINE
 use downpour_shaders::render::puddle_water::PUDDLE_WATER_ROWS;
 use glam::{Vec3, Vec4};
 
+use super::puddle_rings::smoothstep;
 use crate::data::SceneData;
 
 /// The lattice of a puddle's wakes as the shaders read it. Twin of the WGSL struct of the same name.
@@ -52,8 +53,7 @@ impl SceneData {
         let lower = texel(x, y + 1) * (1.0 - fx) + texel(x + 1, y + 1) * fx;
         let mixed = upper * (1.0 - fy) + lower * fy;
         let shown = puddle_wake_shown(footprint / wake.cell);
-        let rises = (depth / puddle.own.x.max(1.0e-6)).clamp(0.0, 1.0);
-        let strength = puddle.ripples.w * (rises * rises * (3.0 - 2.0 * rises));
+        let strength = puddle.ripples.w * smoothstep(0.0, puddle.own.x.max(1.0e-6), depth);
         let slope = mixed.truncate().truncate() * (strength * shown);
         slope.extend(mixed.z * strength * strength * (1.0 - shown * shown))
     }
@@ -62,6 +62,5 @@ impl SceneData {
 /// How much of the waves is shown as slopes with a footprint, in cells: none where they are smaller than the footprint.
 #[must_use]
 pub fn puddle_wake_shown(footprint: f32) -> f32 {
-    let part = ((footprint - PUDDLE_WAKE_FINE) / (PUDDLE_WAKE_COARSE - PUDDLE_WAKE_FINE)).clamp(0.0, 1.0);
-    1.0 - part * part * (3.0 - 2.0 * part)
+    1.0 - smoothstep(PUDDLE_WAKE_FINE, PUDDLE_WAKE_COARSE, footprint)
 }

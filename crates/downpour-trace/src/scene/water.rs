@@ -22,7 +22,7 @@ use downpour_shaders::render::puddle_water::{
 use glam::{Vec2, Vec3, Vec4};
 
 use super::SceneView;
-use super::puddle_rings::puddle_rings_shown;
+use super::puddle_rings::{puddle_rings_shown, smoothstep};
 use crate::puddle::RenderPuddle;
 
 /// Water over a position.
@@ -125,8 +125,7 @@ impl SceneView<'_> {
         let head = self.data.puddle_ripples();
         let cell = head.cell;
         // Scale, cosine and sine of the angle, influence.
-        let rises = (depth / more.x.max(1.0e-6)).clamp(0.0, 1.0);
-        let strength = look.w * open * (rises * rises * (3.0 - 2.0 * rises));
+        let strength = look.w * open * smoothstep(0.0, more.x.max(1.0e-6), depth);
         if head.size == 0 || strength <= 0.0 {
             return Vec3::ZERO;
         }
