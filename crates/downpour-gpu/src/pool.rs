@@ -75,15 +75,38 @@ pub trait BufferSource {
         Ok(buffer)
     }
 
-    /// Returns a uniform buffer with the contents `value`.
+    /// Returns a storage buffer as [`BufferSource::storage`] does, which nobody else writes: neither kernels nor the host. It may be one
+    /// that has these contents already.
+    ///
+    /// # Errors
+    /// As [`BufferSource::buffer`].
+    fn constants<T: Pod>(&self, label: &'static str, data: &[T]) -> Result<wgpu::Buffer, GpuError> {
+        let bytes: &[u8] = bytemuck::cast_slice(data);
+        self.filled(label, bytes, size_of::<T>() as u64, wgpu::BufferUsages::STORAGE)
+    }
+
+    /// Returns a buffer that begins with `bytes` and has room for `least`, which nobody else writes.
+    ///
+    /// # Errors
+    /// As [`BufferSource::buffer`].
+    fn filled(
+        &self,
+        label: &'static str,
+        bytes: &[u8],
+        least: u64,
+        usage: wgpu::BufferUsages,
+    ) -> Result<wgpu::Buffer, GpuError> {
+        let buffer = self.buffer(label, least.max(bytes.len() as u64), usage)?;
+        self.write(&buffer, bytes);
+        Ok(buffer)
+    }
+
+    /// Returns a uniform buffer with the contents `value`, which nobody else writes.
     ///
     /// # Errors
     /// As [`BufferSource::buffer`].
     fn uniform<T: Pod>(&self, label: &'static str, value: &T) -> Result<wgpu::Buffer, GpuError> {
-        let bytes = bytemuck::bytes_of(value);
-        let buffer = self.buffer(label, bytes.len() as u64, wgpu::BufferUsages::UNIFORM)?;
-        self.write(&buffer, bytes);
-        Ok(buffer)
+        self.filled(label, bytemuck::bytes_of(value), 0, wgpu::BufferUsages::UNIFORM)
     }
 }
 
@@ -122,6 +145,8 @@ struct Kept {
     used: HashMap<&'static str, usize>,
     /// Buffers that were given back.
     returned: HashMap<&'static str, Vec<wgpu::Buffer>>,
+    /// Contents of buffers that nobody has written since.
+    contents: HashMap<wgpu::Buffer, Vec<u8>>,
     /// A binding, with the last frame that asked for it.
     bindings: HashMap<BoundTo, (wgpu::BindGroup, u64)>,
     /// Number of the current frame.
@@ -216,15 +241,42 @@ impl BufferSource for BufferPool {
             None => {
                 let made = self.gpu.empty_buffer(label, self.roomy(bytes, usage), usage)?;
                 let buffers = kept.buffers.entry(label).or_default();
-                match buffers.get_mut(nth) {
-                    Some(place) => *place = made.clone(),
-                    None => buffers.push(made.clone()),
+                let smaller = match buffers.get_mut(nth) {
+                    Some(place) => Some(std::mem::replace(place, made.clone())),
+                    None => {
+                        buffers.push(made.clone());
+                        None
+                    }
+                };
+                if let Some(smaller) = smaller {
+                    kept.contents.remove(&smaller);
                 }
                 kept.made += 1;
                 made
             }
         };
         kept.used.insert(label, nth + 1);
+        Ok(buffer)
+    }
+
+    /// Writes only what is not there already from the frame before.
+    fn filled(
+        &self,
+        label: &'static str,
+        bytes: &[u8],
+        least: u64,
+        usage: wgpu::BufferUsages,
+    ) -> Result<wgpu::Buffer, GpuError> {
+        let buffer = self.buffer(label, least.max(bytes.len() as u64), usage)?;
+        let is_there = {
+            let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+            kept.contents.get(&buffer).is_some_and(|known| known.starts_with(bytes))
+        };
+        if !is_there {
+            self.write(&buffer, bytes);
+            let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+            kept.contents.insert(buffer.clone(), bytes.to_vec());
+        }
         Ok(buffer)
     }
 
@@ -248,6 +300,7 @@ impl BufferSource for BufferPool {
 
     fn write_at(&self, buffer: &wgpu::Buffer, offset: u64, bytes: &[u8]) {
         self.note_written(bytes.len() as u64);
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner).contents.remove(buffer);
         self.gpu.write_at(buffer, offset, bytes);
     }
 
@@ -288,6 +341,28 @@ mod tests {
         assert_eq!(picture(128).size(), 128);
         assert_eq!(pool.made(), 3);
         assert_ne!(picture(64), first);
+    }
+
+    #[test]
+    fn what_is_there_is_not_written_again() {
+        let pool = BufferPool::new(&noop());
+        let frame = |classes: &[u32], dt: f32| {
+            pool.begin_frame();
+            let buffer = pool.constants("classes", classes).unwrap();
+            pool.uniform("frame", &dt).unwrap();
+            (buffer, pool.written())
+        };
+        let (first, written) = frame(&[1, 2, 3], 0.5);
+        assert_eq!(written, 16);
+        assert_eq!(frame(&[1, 2, 3], 0.5), (first.clone(), 0));
+        assert_eq!(frame(&[1, 2], 0.25), (first.clone(), 4));
+        assert_eq!(frame(&[1, 2, 4], 0.25), (first.clone(), 12));
+        // What others have written is written over.
+        pool.write_at(&first, 4, &[0; 4]);
+        assert_eq!(frame(&[1, 2, 4], 0.25), (first.clone(), 12));
+        // A larger buffer has nothing of the smaller one.
+        let (larger, written) = frame(&[7; 100_000], 0.25);
+        assert!(larger != first && written == 400_000);
     }
 
     #[test]

@@ -210,6 +210,7 @@ impl SceneBuilder {
             triangles: Arc::new(bvh.triangles),
             corners: Arc::new(corners),
             table,
+            shared: Vec::new(),
             texels: self.texels,
             slots,
             lights,

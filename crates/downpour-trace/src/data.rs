@@ -17,6 +17,7 @@ use downpour_shaders::render::scene::{
 use glam::Vec3;
 
 use crate::billboards::Impostors;
+use crate::shared_rows::SharedRows;
 use crate::skylight::skylight_radius;
 use crate::still_part::StillPart;
 
@@ -122,6 +123,8 @@ pub struct SceneData {
     pub corners: Arc<Vec<RenderCorner>>,
     /// Materials, texture slots, lights, wetness, rain on panes of the scene, puddles and a pane before the camera, as rows.
     pub table: Vec<[u32; 4]>,
+    /// Maps of the puddles, and before them the slopes of rings on them: rows behind those of the table.
+    pub shared: Vec<SharedRows>,
     /// Texels of all levels of all textures, and behind them the tree of surfaces that shine ([`emitter`](crate::emitter)).
     pub texels: Arc<Vec<u32>>,
     /// Row where slots begin.
@@ -213,6 +216,7 @@ impl SceneData {
         }
         if self.puddles == 0 {
             self.puddle_count = 0;
+            self.shared.clear();
         }
     }
 

@@ -368,7 +368,7 @@ impl FrameScene {
             size_of_val(&data.nodes[..]),
             size_of_val(&data.triangles[..]),
             size_of_val(&data.corners[..]),
-            size_of_val(&data.table[..]),
+            data.row_count() * size_of::<[u32; 4]>(),
             size_of_val(&data.texels[..]),
             size_of_val(&data.sky[..]),
         ]

@@ -127,6 +127,12 @@ pub(crate) fn is_lit_alike(before: &SceneData, scene: &SceneData) -> bool {
     if !shares || rows(before) != rows(scene) {
         return false;
     }
+    let maps = before.shared.iter().zip(&scene.shared);
+    if before.shared.len() != scene.shared.len()
+        || !maps.into_iter().all(|(a, b)| a.is(b) || a.rows() == b.rows())
+    {
+        return false;
+    }
     let (skipped, panes, _) = rows(scene);
     let (table, other) = (&scene.table, &before.table);
     // In their order in the table.

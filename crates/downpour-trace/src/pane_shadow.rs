@@ -37,6 +37,7 @@ impl SceneData {
             self.pane = self.table.len() as u32;
             self.table.extend(rows);
         }
+        self.place_shared();
     }
 
     /// Sets the pane in front of the lamps; replaces an earlier one; `axes`: its corner, right, down and outward, in the

@@ -28,8 +28,9 @@ struct Filled {
     limits: FillLimits,
     /// Depth of water that seeps away, m/s; `None` for a puddle that keys fill.
     seepage: Option<f64>,
-    /// Present filling.
+    /// Present filling, and the levels of the hollows.
     filling: Filling,
+    levels: Vec<Option<f32>>,
 }
 
 /// Puddles of a weather on the ground of its scene.
@@ -93,9 +94,10 @@ impl WetGround {
                         PuddleFill::Part(_) => (given(weather, index, first_s), None),
                         PuddleFill::Rain { seepage } => (filling(weather, seepage, first_s), Some(seepage)),
                     };
-                    let map = ground.filled(&filling, &limits);
+                    let levels = ground.levels(&filling, &limits);
+                    let map = ground.with_levels(&levels);
                     if seepage.is_some() || weather.keys.has_fill(index) {
-                        filled.push(Filled { index, ground, limits, seepage, filling });
+                        filled.push(Filled { index, ground, limits, seepage, filling, levels });
                     }
                     map
                 }
@@ -129,9 +131,15 @@ impl WetGround {
                 Some(seepage) => filling(&self.weather, seepage, time_s),
                 None => given(&self.weather, puddle.index, time_s),
             };
-            if now != puddle.filling {
-                puddle.filling = now;
-                self.puddles[puddle.index].0 = puddle.ground.filled(&now, &puddle.limits);
+            if now == puddle.filling {
+                continue;
+            }
+            puddle.filling = now;
+            let levels = puddle.ground.levels(&now, &puddle.limits);
+            // Full hollows stay as they are.
+            if levels != puddle.levels {
+                self.puddles[puddle.index].0 = puddle.ground.with_levels(&levels);
+                puddle.levels = levels;
             }
         }
         if let Some((wakes, moves)) = &mut self.wakes {

@@ -266,6 +266,38 @@ fn nothing_is_wet_under_a_roof() -> Outcome {
     Ok(())
 }
 
+/// Hills of a million triangles: darker in the rain, and under a roof exactly as dry as before.
+#[test]
+fn a_model_of_a_million_triangles_is_wet_where_it_rains() -> Outcome {
+    let count = 709;
+    let place = |i: usize| {
+        let [x, z] = [i % count, i / count].map(|at| at as f64 * 0.05 - 17.7);
+        [x as f32, (0.2 * exact::sin(x) * exact::cos(0.7 * z)) as f32, z as f32]
+    };
+    let positions: Vec<[f32; 3]> = (0..count * count).map(place).collect();
+    let cell = |i: usize| {
+        let at = (i / (count - 1) * count + i % (count - 1)) as u32;
+        let below = at + count as u32;
+        [at, below, at + 1, at + 1, below, below + 1]
+    };
+    let indices: Vec<u32> = (0..(count - 1) * (count - 1)).flat_map(cell).collect();
+    assert!(indices.len() > 3_000_000);
+    let mut builder = SceneBuilder::new();
+    let material = builder.add_material(look(0.3, 0.85, 1.0));
+    builder.add_mesh(&MeshPart::plain(&positions, &indices, material), &Affine3A::IDENTITY);
+    square(&mut builder, material, Vec3::new(8.0, 3.0, 0.0), Vec3::Z * 4.0, Vec3::X * 4.0);
+    let mut scene = builder.build(&SkyLight::uniform([1.0; 3]));
+    let seen = |scene: &SceneData, x: f32| {
+        let at = Vec3::new(x, 0.0, 0.3);
+        picture(scene, at + Vec3::Y * 1.8, at, 0.5, [16, 16], 0).map(|picture| mean(&picture))
+    };
+    let [open, roofed] = [seen(&scene, -8.0)?, seen(&scene, 8.0)?];
+    scene.set_wetness(Some(&SOAKED));
+    let [wet, below] = [seen(&scene, -8.0)?, seen(&scene, 8.0)?];
+    assert!(wet < 0.8 * open && below == roofed, "{open} and {wet}, {roofed} and {below}");
+    Ok(())
+}
+
 /// A wall meets the rain that the wind brings, and none without wind; rain from behind leaves it dry.
 #[test]
 fn walls_are_wet_toward_the_wind() -> Outcome {

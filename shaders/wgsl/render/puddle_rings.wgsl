@@ -1,7 +1,8 @@
 // Rings of single drops on the water near the eye: the closed form of each from a table of slopes, and their sum, in whole numbers, so
 // that it does not depend on their order.
 // Rows behind that of the ripples' lattice: cells along x and z, first row of the cells and of the rings; first row of the slopes, part
-// and reach; corner and middle. A cell has the number of its first ring; the last of them is that of the cell behind it. A ring has two words: its
+// and reach; corner and middle. A cell has the number of its first ring, in half a
+// word; the last of them is that of the cell behind it. A ring has two words: its
 // place in the cell, and its age and its size.
 // Twin: downpour_trace::scene::puddle_rings.
 
@@ -35,6 +36,11 @@ fn puddle_rings_load() -> PuddleRings {
 // A word of rows.
 fn puddle_rings_word(first: u32, index: u32) -> u32 {
     return render_table[first + index / 4u][index % 4u];
+}
+
+// Number of the first ring of a cell.
+fn puddle_rings_first(rings: PuddleRings, cell: u32) -> u32 {
+    return (puddle_rings_word(rings.first_cell, cell / 2u) >> (16u * (cell & 1u))) & 0xffffu;
 }
 
 // A slope of the table: of a node of sizes, at a step of time and a step of distance.
@@ -88,9 +94,9 @@ fn puddle_rings_sum(rings: PuddleRings, position: vec2f) -> vec2f {
             continue;
         }
         let index = u32(cell.y) * rings.cells.x + u32(cell.x);
-        let end = puddle_rings_word(rings.first_cell, index + 1u);
+        let end = puddle_rings_first(rings, index + 1u);
         let in_cell = (place - vec2f(cell)) * PUDDLE_RINGS_CELL;
-        for (var ring = puddle_rings_word(rings.first_cell, index); ring < end; ring += 1u) {
+        for (var ring = puddle_rings_first(rings, index); ring < end; ring += 1u) {
             sum += puddle_rings_one(rings, ring, in_cell);
         }
     }

@@ -63,6 +63,16 @@ impl PuddleKernels {
     }
 }
 
+/// Kernels of one submission.
+#[derive(Debug, Default)]
+struct Work {
+    kernels: Vec<(ComputeKernel, wgpu::BindGroup, [u32; 3])>,
+    /// Which of the states is the newer one after them.
+    newer: usize,
+    /// Time steps.
+    steps: u64,
+}
+
 /// A puddle on a GPU.
 #[derive(Debug)]
 pub struct GpuPuddle {
@@ -152,37 +162,89 @@ impl GpuPuddle {
     /// [`GpuPuddleError::Lattice`] if the time is not valid; else errors of the GPU.
     pub fn step(&mut self, dt_s: f32) -> Result<u32, GpuPuddleError> {
         let substeps = self.model.substeps(f64::from(dt_s))?;
-        let dt = f64::from(dt_s) / f64::from(substeps);
+        self.pool.begin_frame();
+        let mut work = Work { newer: self.newer, ..Work::default() };
+        self.add_steps(&mut work, f64::from(dt_s), substeps)?;
+        self.submit(&work)?;
+        Ok(substeps)
+    }
+
+    /// Adds the craters of impacts and then advances the puddle by `dt_s` seconds, once for each of `impacts`: in one submission. Does not
+    /// wait.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step) and [`seed`](Self::seed); the puddle is then unchanged.
+    pub fn rain(&mut self, impacts: &[Vec<Impact>], dt_s: f32) -> Result<(), GpuPuddleError> {
+        let substeps = self.model.substeps(f64::from(dt_s))?;
+        let seeds = impacts.iter().map(|impacts| craters(&self.model, impacts));
+        let seeds = seeds.collect::<Result<Vec<_>, _>>()?;
+        self.pool.begin_frame();
+        let mut work = Work { newer: self.newer, ..Work::default() };
+        for seeds in &seeds {
+            self.add_seeds(&mut work, seeds)?;
+            self.add_steps(&mut work, f64::from(dt_s), substeps)?;
+        }
+        self.submit(&work)
+    }
+
+    /// Adds `substeps` sub-steps, `dt_s` seconds together, to some work.
+    fn add_steps(&mut self, work: &mut Work, dt_s: f64, substeps: u32) -> Result<(), GpuPuddleError> {
+        let dt = dt_s / f64::from(substeps);
         let full = if self.direct.is_some() { 1 } else { self.model.steps_per_sweep() };
         let kernel = self.direct.as_ref().unwrap_or(&self.kernels.step);
         let (whole, rest) = (substeps / full, substeps % full);
         let mut sweeps = vec![full; whole as usize];
         sweeps.extend((rest > 0).then_some(rest));
-        self.pool.begin_frame();
         let uniforms =
             [full, rest.max(1)].map(|steps| self.pool.uniform("puddle grid", &self.model.grid(dt, steps)));
         let [full_uniform, rest_uniform] = uniforms;
         let (full_uniform, rest_uniform) = (full_uniform?, rest_uniform?);
-        let bind = |uniform: &wgpu::Buffer, from: usize| {
-            let buffers = [uniform, &self.links, &self.states[from], &self.states[1 - from], &self.reset];
-            kernel.bind(&self.pool, &buffers)
-        };
-        // One for each direction between the copies, and one for the remainder.
-        let last_from = (self.newer + whole as usize) % 2;
-        let bindings = [bind(&full_uniform, 0)?, bind(&full_uniform, 1)?, bind(&rest_uniform, last_from)?];
-        let mut from = self.newer;
-        let mut dispatches = Vec::with_capacity(sweeps.len());
         for steps in sweeps {
-            let binding = if steps == full { &bindings[from] } else { &bindings[2] };
-            dispatches.push(kernel.dispatch(binding, self.groups(steps, self.direct.is_some())));
-            from = 1 - from;
+            let (from, to) = (&self.states[work.newer], &self.states[1 - work.newer]);
+            let uniform = if steps == full { &full_uniform } else { &rest_uniform };
+            let bindings = kernel.bind(&self.pool, &[uniform, &self.links, from, to, &self.reset])?;
+            work.kernels.push((kernel.clone(), bindings, self.groups(steps, self.direct.is_some())));
+            work.newer = 1 - work.newer;
         }
+        work.steps += u64::from(substeps);
+        Ok(())
+    }
+
+    /// Adds seeds to some work.
+    fn add_seeds(&self, work: &mut Work, seeds: &[PuddleSeed]) -> Result<(), GpuPuddleError> {
+        for seeds in seeds.chunks(SEEDS) {
+            let squares = SeedSquares::new(&self.model.links, seeds);
+            if squares.entries.is_empty() {
+                continue;
+            }
+            let uniform = self.pool.uniform("puddle grid", &self.whole)?;
+            let list = self.pool.storage("puddle seeds", seeds)?;
+            let first = self.pool.storage("puddle seeds of squares", &squares.first)?;
+            let entries = self.pool.storage("puddle seed entries", &squares.entries)?;
+            let [from, to] = [work.newer, 1 - work.newer].map(|k| &self.states[k]);
+            let buffers = [&uniform, &self.links, from, &list, &first, &entries, to];
+            let bindings = self.kernels.seed.bind(&self.pool, &buffers)?;
+            work.kernels.push((self.kernels.seed.clone(), bindings, groups_of(&self.whole)));
+            work.newer = 1 - work.newer;
+        }
+        Ok(())
+    }
+
+    /// Submits some work, if there is any.
+    fn submit(&mut self, work: &Work) -> Result<(), GpuPuddleError> {
+        if work.kernels.is_empty() {
+            return Ok(());
+        }
+        let dispatches: Vec<Dispatch<'_>> = work
+            .kernels
+            .iter()
+            .map(|(kernel, bindings, groups)| kernel.dispatch(bindings, *groups))
+            .collect();
         self.gpu.submit(&dispatches)?;
-        drop(dispatches);
         self.bytes_uploaded += self.pool.written();
-        self.newer = from;
-        self.steps += u64::from(substeps);
-        Ok(substeps)
+        self.newer = work.newer;
+        self.steps += work.steps;
+        Ok(())
     }
 
     /// Number of workgroups of a sweep: a tile writes its cells without the halo.
@@ -241,25 +303,10 @@ impl GpuPuddle {
     }
 
     fn add(&mut self, seeds: &[PuddleSeed]) -> Result<(), GpuPuddleError> {
-        for seeds in seeds.chunks(SEEDS) {
-            let squares = SeedSquares::new(&self.model.links, seeds);
-            if squares.entries.is_empty() {
-                continue;
-            }
-            self.pool.begin_frame();
-            let uniform = self.pool.uniform("puddle grid", &self.whole)?;
-            let list = self.pool.storage("puddle seeds", seeds)?;
-            let first = self.pool.storage("puddle seeds of squares", &squares.first)?;
-            let entries = self.pool.storage("puddle seed entries", &squares.entries)?;
-            let [from, to] = [self.newer, 1 - self.newer];
-            let buffers =
-                [&uniform, &self.links, &self.states[from], &list, &first, &entries, &self.states[to]];
-            let bindings = self.kernels.seed.bind(&self.pool, &buffers)?;
-            self.gpu.submit(&[self.kernels.seed.dispatch(&bindings, groups_of(&self.whole))])?;
-            self.bytes_uploaded += self.pool.written();
-            self.newer = to;
-        }
-        Ok(())
+        self.pool.begin_frame();
+        let mut work = Work { newer: self.newer, ..Work::default() };
+        self.add_seeds(&mut work, seeds)?;
+        self.submit(&work)
     }
 
     /// Makes the water level again. Does not wait.

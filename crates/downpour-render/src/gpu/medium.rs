@@ -102,7 +102,7 @@ impl MediumPipeline {
         let pixels = u64::from(width) * u64::from(height);
         let rows = medium.grid_rows() as u64 + 2 * pixels;
         let found = buffers.buffer("unresolved rain", rows * 16, wgpu::BufferUsages::STORAGE)?;
-        let phase = buffers.storage("phase function", &medium.phase)?;
+        let phase = buffers.constants("phase function", &medium.phase)?;
         let frame = buffers.uniform("medium frame", &medium.medium)?;
         let clean = plate.pixels;
         let numbered = || (0u32..).zip(&plate.lighting.buffers);

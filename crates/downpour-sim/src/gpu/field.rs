@@ -276,8 +276,8 @@ impl FieldPipeline {
         let clear = self.clear.bind_at(buffers, [(0, &uniform), (5, drops), (6, found)])?;
         let mut find = None;
         if query.frame.columns > 0 {
-            let classes = buffers.storage("classes of the field", &query.classes)?;
-            let drift = buffers.storage("drift of drops", &query.drift)?;
+            let classes = buffers.constants("classes of the field", &query.classes)?;
+            let drift = buffers.constants("drift of drops", &query.drift)?;
             let (nodes, thresholds) = (&on.nodes, &on.thresholds);
             let bound = [&uniform, &classes, nodes, thresholds, &drift, drops, found, &on.begins, &on.parts];
             find = Some((
@@ -289,7 +289,7 @@ impl FieldPipeline {
         if let Some(bounds) = obstacles.bounds {
             let (frame, drift) = shelter_frame(field, on, query, (obstacles, bounds), (view, time_s));
             let uniform = buffers.uniform("shelter frame", &frame)?;
-            let drift = buffers.storage("drift of paths", &drift)?;
+            let drift = buffers.constants("drift of paths", &drift)?;
             let mut bound = obstacles.bindings();
             bound.extend([(6, &uniform), (7, drops), (8, &drift)]);
             let kernel = self.shelter(obstacles.holes.is_some())?;
@@ -310,15 +310,15 @@ impl FieldPipeline {
         let Some(bounds) = obstacles.bounds else { return Ok(Vec::new()) };
         let BounceSearch { end_s, view, query, frame, rows } = search;
         let field_frame = buffers.uniform("field frame of droplets", &query.frame)?;
-        let classes = buffers.storage("classes of droplets", &query.classes)?;
-        let drift = buffers.storage("drift of drops with droplets", &query.drift)?;
+        let classes = buffers.constants("classes of droplets", &query.classes)?;
+        let drift = buffers.constants("drift of drops with droplets", &query.drift)?;
         let bounce_frame = buffers.uniform("bounce frame", frame)?;
-        let rows = buffers.storage("motion by the wind", rows)?;
+        let rows = buffers.constants("motion by the wind", rows)?;
         let before = offset_of!(BounceParts, drops) as u64;
         let parts = list_buffer(buffers, "parts of paths", frame.parts, before)?;
         let (shelter, paths) = shelter_frame(field, on, query, (obstacles, bounds), (view, *end_s));
         let shelter = buffers.uniform("shelter frame of droplets", &shelter)?;
-        let paths = buffers.storage("drift of paths of drops with droplets", &paths)?;
+        let paths = buffers.constants("drift of paths of drops with droplets", &paths)?;
         let [clear, find, list] = self.bounce_kernels()?;
         let hit = self.bounce_hit(obstacles.holes.is_some())?;
         let of_find = [

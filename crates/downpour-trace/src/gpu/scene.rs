@@ -17,6 +17,7 @@ use super::impostor::{ImpostorPass, ImpostorPipeline};
 use super::ripples::RipplesOnGpu;
 use super::temporal::LightOnGpu;
 use crate::data::{RenderFrame, SceneData};
+use crate::shared_rows::SharedRows;
 use crate::trace::TraceAmbient;
 
 /// Pixels of a dispatch on a device whose speed is not known: a submission must stay far below the time after which a driver resets.
@@ -469,7 +470,7 @@ impl SceneOnGpu {
     /// # Errors
     /// As [`ScenePipeline::upload`].
     pub fn ripples(&self, buffers: &impl BufferSource) -> Result<Option<PuddleSlopesPass<'_>>, GpuError> {
-        let first = self.of.table.len() as u32;
+        let first = self.of.row_count() as u32;
         self.of.ripples.as_ref().map(|ripples| ripples.prepare(buffers, &self.table, first)).transpose()
     }
 
@@ -484,7 +485,9 @@ impl SceneOnGpu {
         frame: &RenderFrame,
         scene: &SceneData,
     ) -> Result<LightingOnGpu, GpuError> {
-        let table = buffers.storage("scene table", &scene.table)?;
+        let mut rows = scene.table.clone();
+        rows.extend(scene.shared_places().into_iter().flat_map(|(_, shared)| shared.rows()));
+        let table = buffers.storage("scene table", &rows)?;
         Self { table, ..self.clone() }.lighting(buffers, frame)
     }
 
@@ -539,7 +542,7 @@ fn write_around<T: bytemuck::Pod>(
 /// Bytes of the table of a scene with room for the ripples of a lattice on the device.
 fn table_bytes(scene: &SceneData) -> u64 {
     let ripples = scene.ripples.as_ref().map_or(0, RipplesOnGpu::row_count);
-    (scene.table.len() as u64 + u64::from(ripples)) * 16
+    (scene.row_count() as u64 + u64::from(ripples)) * 16
 }
 
 /// The table of a scene on the device, with room for the ripples of a lattice there.
@@ -563,8 +566,20 @@ fn write_changes(
     for rows in changed_rows(there, &scene.table).into_iter().chain(own) {
         buffers.write_at(table, 16 * rows.start as u64, bytemuck::cast_slice(&scene.table[rows]));
     }
+    let known = before.map(SceneData::shared_places).unwrap_or_default();
+    for (first, shared) in scene.shared_places() {
+        let there = known.iter().find(|(at, _)| *at == first).map(|(_, shared)| *shared);
+        if there.is_some_and(|there| there.is(shared)) {
+            continue;
+        }
+        let rows = shared.rows();
+        for changed in changed_rows(there.map_or(&[], SharedRows::rows), rows) {
+            let at = 16 * (u64::from(first) + changed.start as u64);
+            buffers.write_at(table, at, bytemuck::cast_slice(&rows[changed]));
+        }
+    }
     if let Some(ripples) = &scene.ripples {
-        let head = ripples.head(scene.table.len() as u32);
+        let head = ripples.head(scene.row_count() as u32);
         buffers.write_at(table, 16 * u64::from(scene.ripples_row()), bytemuck::bytes_of(&head));
         buffers.note_written(ripples.bytes_uploaded);
     }
@@ -588,7 +603,100 @@ fn changed_rows(before: &[[u32; 4]], table: &[[u32; 4]]) -> Vec<Range<usize>> {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::HashMap;
+    use std::sync::Mutex;
+
+    use glam::{Vec2, Vec3};
+
     use super::*;
+    use crate::builder::SceneBuilder;
+    use crate::puddle::{Ground, PuddleLook, PuddleMap, PuddleRows, WakeRows};
+    use crate::sky_light::SkyLight;
+
+    /// A device without kernels that knows what was written to it.
+    struct Written {
+        gpu: Gpu,
+        bytes: Mutex<HashMap<wgpu::Buffer, Vec<u8>>>,
+        count: Mutex<usize>,
+    }
+
+    impl Written {
+        fn new() -> Self {
+            let (device, queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
+            Self { gpu: Gpu::on_device(device, queue), bytes: Mutex::default(), count: Mutex::default() }
+        }
+    }
+
+    impl BufferSource for Written {
+        fn buffer(
+            &self,
+            label: &'static str,
+            bytes: u64,
+            usage: wgpu::BufferUsages,
+        ) -> Result<wgpu::Buffer, GpuError> {
+            self.gpu.empty_buffer(label, bytes, usage)
+        }
+
+        fn write_at(&self, buffer: &wgpu::Buffer, offset: u64, bytes: &[u8]) {
+            let mut all = self.bytes.lock().unwrap();
+            let there = all.entry(buffer.clone()).or_insert_with(|| vec![0xff; buffer.size() as usize]);
+            there[offset as usize..offset as usize + bytes.len()].copy_from_slice(bytes);
+            *self.count.lock().unwrap() += bytes.len();
+        }
+
+        fn gpu(&self) -> &Gpu {
+            &self.gpu
+        }
+    }
+
+    /// The table on the device is that of the scene, whatever of it has changed, and of maps that have not changed nothing is written.
+    #[test]
+    fn a_table_follows_its_scene() {
+        let map = |size: [usize; 2], depth: f32| {
+            let ground = Ground { middle: Vec3::ZERO, size: Vec2::ONE, turn: 0.0, reach: 0.3 };
+            let cells = (0..size[0] * size[1]).map(|i| [0.0, i as f32, depth, 1.0]).collect();
+            (PuddleMap { ground, size, cells }, PuddleLook::default())
+        };
+        let (large, small) = (map([100, 100], 0.01), map([20, 20], 0.02));
+        let wake = WakeRows { puddle: 1, size: [8, 8], cell_m: 0.1, slopes: vec![[0.1; 4]; 64] };
+        let one = std::slice::from_ref(&large);
+        let two = [large.clone(), small.clone()];
+        let higher = [large.clone(), map([20, 20], 0.03)];
+        let steps: [(&[(PuddleMap, PuddleLook)], &[WakeRows], usize); 7] = [
+            (&two, &[], 166_400),
+            // A head or two.
+            (&two, &[], 0),
+            (&higher, &[], 6_400),
+            (&higher, &[], 0),
+            // What comes later in the table moves.
+            (&higher, std::slice::from_ref(&wake), 167_500),
+            (&two, std::slice::from_ref(&wake), 6_400),
+            (one, &[], 160_000),
+        ];
+        let device = Written::new();
+        let scene = SceneBuilder::new().build(&SkyLight::new(1, 1, &[[1.0; 3]]));
+        let mut on_device: Option<SceneOnGpu> = None;
+        for (k, (puddles, wakes, wanted)) in steps.into_iter().enumerate() {
+            let mut scene = scene.clone();
+            let (shape, shift) = ((128, 7, 0.01), Vec3::ZERO);
+            scene.set_puddles(&PuddleRows { puddles, shape, slopes: &[], shift, rings: None, wakes });
+            *device.count.lock().unwrap() = 0;
+            let now = match on_device.take() {
+                Some(before) => before.renewed(&device, &scene),
+                None => SceneOnGpu::new(&device, &scene),
+            };
+            let now = now.unwrap();
+            let written = *device.count.lock().unwrap();
+            assert!(k == 0 || (wanted..wanted + 2000).contains(&written), "{k}: {written} bytes");
+            let rows: Vec<[u32; 4]> = (0..scene.row_count() as u32).map(|row| scene.row(row)).collect();
+            let bytes = device.bytes.lock().unwrap();
+            assert_eq!(bytes[&now.table][..16 * rows.len()], *bytemuck::cast_slice::<_, u8>(&rows), "{k}");
+            for (k, (map, _)) in (0..).zip(puddles) {
+                assert_eq!(scene.puddle_texel(scene.puddle_load(k).map[2] + 7).to_array(), map.cells[7]);
+            }
+            on_device = Some(now);
+        }
+    }
 
     #[test]
     fn rows_that_differ_are_written_in_blocks() {

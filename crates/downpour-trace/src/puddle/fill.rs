@@ -8,6 +8,8 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+use rayon::prelude::*;
+
 /// Ground as a grid of cells, row by row.
 #[derive(Clone, Copy, Debug)]
 pub struct Hollows<'a> {
@@ -140,16 +142,23 @@ pub fn basins(hollows: &Hollows<'_>) -> Vec<Basin> {
     basins
 }
 
-/// The level of the water over each cell, m; `None` on land.
+/// The level, m, of the water in each hollow; `None` where it is too shallow to stand.
 #[must_use]
-pub fn fill(count: usize, basins: &[Basin], filling: &Filling, limits: &FillLimits) -> Vec<Option<f32>> {
-    let mut levels = vec![None; count];
-    for basin in basins {
+pub fn levels(basins: &[Basin], filling: &Filling, limits: &FillLimits) -> Vec<Option<f32>> {
+    let of_basin = |basin: &Basin| {
         let level = basin.level(filling, limits);
         let bottom = basin.heights.first().copied().unwrap_or(level);
-        if level - bottom < limits.least {
-            continue;
-        }
+        (level - bottom >= limits.least).then_some(level)
+    };
+    basins.par_iter().map(of_basin).collect()
+}
+
+/// The level of the water over each cell, m, with hollows filled to some [`levels`]; `None` on land.
+#[must_use]
+pub fn fill(count: usize, basins: &[Basin], filled: &[Option<f32>]) -> Vec<Option<f32>> {
+    let mut levels = vec![None; count];
+    for (basin, level) in basins.iter().zip(filled) {
+        let Some(level) = *level else { continue };
         for (&cell, _) in basin.cells.iter().zip(&basin.heights).take_while(|&(_, &height)| height < level) {
             levels[cell as usize] = Some(level);
         }
@@ -231,7 +240,7 @@ mod tests {
         let open = vec![1.0; ground.len()];
         let basins = basins(&Hollows { size, ground: &ground, open: &open });
         let limits = FillLimits { deepest: 10.0, least: 1.0e-3 };
-        fill(ground.len(), &basins, &Filling::Fraction(fraction), &limits)
+        fill(ground.len(), &basins, &levels(&basins, &Filling::Fraction(fraction), &limits))
     }
 
     /// Two bowls whose rims are at 1 and at 2, the second with a notch at 1.5.
@@ -273,7 +282,7 @@ mod tests {
         let levels = |deepest, least| {
             let basins = basins(&Hollows { size: [20, 20], ground: &ground, open: &[1.0; 400] });
             let limits = FillLimits { deepest, least };
-            fill(400, &basins, &Filling::Fraction(1.0), &limits)[9 * 20 + 6]
+            fill(400, &basins, &levels(&basins, &Filling::Fraction(1.0), &limits))[9 * 20 + 6]
         };
         assert_eq!(levels(10.0, 0.1), Some(0.0));
         assert_eq!(levels(0.5, 0.1), Some(-1.5));

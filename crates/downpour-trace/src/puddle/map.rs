@@ -1,12 +1,14 @@
 //! Map of the water that stands on the ground, and of its depth.
 
+use std::sync::Arc;
+
 use downpour_math::ops;
 use downpour_shaders::bvh::BVH_FAR;
 use downpour_shaders::render::puddle_water::PUDDLE_WATER_MIN_DEPTH;
 use glam::{DVec2, Vec2, Vec3};
 use rayon::prelude::*;
 
-use super::fill::{Basin, FillLimits, Filling, Hollows, basins, fill};
+use super::fill::{Basin, FillLimits, Filling, Hollows, basins, fill, levels};
 use super::relief::Relief;
 use crate::data::SceneData;
 
@@ -57,7 +59,7 @@ pub struct PuddleMap {
     pub size: [usize; 2],
     /// For each cell: height of the ground over the middle (m), rise of the water's surface over that (m), depth (m, below
     /// 0 on land), fraction of the rain that arrives.
-    pub cells: Vec<[f32; 4]>,
+    pub cells: Arc<[[f32; 4]]>,
 }
 
 impl Ground {
@@ -66,6 +68,12 @@ impl Ground {
         let half = 0.5 * self.size.as_dvec2();
         let turn = turned(self.turn).as_dvec2().abs();
         DVec2::new(half.x * turn.x + half.y * turn.y, half.x * turn.y + half.y * turn.x)
+    }
+
+    /// True if the boxes along x and z overlap that two rectangles are in.
+    pub(super) fn may_overlap(&self, other: &Self) -> bool {
+        let middle = |ground: &Self| DVec2::new(f64::from(ground.middle.x), f64::from(ground.middle.z));
+        (middle(self) - middle(other)).abs().cmplt(self.extent() + other.extent()).all()
     }
 
     /// The position over a part of the rectangle, 0 to 1 along its edges, at its middle's height.
@@ -129,9 +137,21 @@ impl PuddleGround {
     /// Water in its hollows.
     #[must_use]
     pub fn filled(&self, filling: &Filling, limits: &FillLimits) -> PuddleMap {
+        self.with_levels(&self.levels(filling, limits))
+    }
+
+    /// The level, m, of the water in each hollow; `None` where it is too shallow to stand.
+    #[must_use]
+    pub fn levels(&self, filling: &Filling, limits: &FillLimits) -> Vec<Option<f32>> {
+        levels(&self.basins, filling, limits)
+    }
+
+    /// Water up to [`PuddleGround::levels`].
+    #[must_use]
+    pub fn with_levels(&self, filled: &[Option<f32>]) -> PuddleMap {
         let Self { ground, size, model, open, uneven, basins } = self;
         let [columns, rows] = *size;
-        let mut levels = fill(columns * rows, basins, filling, limits);
+        let mut levels = fill(columns * rows, basins, filled);
         // Who is beside water knows its level too, so that the shore runs between the cells.
         let wet: Vec<bool> = levels.iter().map(Option::is_some).collect();
         for _ in 0..SHORE_CELLS {
@@ -147,7 +167,8 @@ impl PuddleGround {
             let depth = if wet[i] { depth } else { depth.clamp(-SHORE_M, -0.1 * PUDDLE_WATER_MIN_DEPTH) };
             [height, (level - model[i]).max(0.0), depth, open[i]]
         };
-        PuddleMap { ground: *ground, size: *size, cells: (0..columns * rows).map(cell).collect() }
+        let cells: Vec<[f32; 4]> = (0..columns * rows).into_par_iter().map(cell).collect();
+        PuddleMap { ground: *ground, size: *size, cells: cells.into() }
     }
 }
 
@@ -239,11 +260,11 @@ fn spread(levels: &[Option<f32>], [columns, rows]: [usize; 2]) -> Vec<Option<f32
         inside.then(|| levels[y as usize * columns + x as usize]).flatten()
     };
     let cell = |i: usize| {
-        let (x, y) = ((i % columns) as isize, (i / columns) as isize);
         levels[i].or_else(|| {
+            let (x, y) = ((i % columns) as isize, (i / columns) as isize);
             let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy)));
             around.filter_map(|(dx, dy)| at(x + dx, y + dy)).reduce(f32::max)
         })
     };
-    (0..columns * rows).map(cell).collect()
+    (0..columns * rows).into_par_iter().map(cell).collect()
 }

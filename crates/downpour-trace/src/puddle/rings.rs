@@ -22,7 +22,7 @@ use glam::{DVec2, DVec3, Vec2, Vec3};
 use half::f16;
 use rayon::prelude::*;
 
-use super::map::{PuddleMap, turned};
+use super::map::{Ground, PuddleMap, turned};
 use super::ripples::{MEMORY_S, options};
 use super::{PuddleError, PuddleLook};
 
@@ -76,8 +76,53 @@ impl Bin {
     }
 }
 
+/// The wind carries drops aside by less than this between the height of a map's middle and the surface, m.
+const ASIDE_M: f64 = 0.25;
+
+/// Cells of a row of a map that are bounded together.
+const CELLS_BOUNDED: usize = 16;
+
+/// Parts in which the drops of the next span of time are found, one per picture, so that no picture has to find all of them.
+const SHARES: usize = 6;
+
 /// Puddle, square of the world and span of time whose drops are found together.
 type Block = (usize, [i64; 2], i64);
+
+/// Two corners of a rectangle in the world, m.
+type Corners = [DVec2; 2];
+
+/// Drops that come through the plane at the height of a map's middle.
+#[derive(Debug)]
+struct Found {
+    /// Where they were looked for.
+    part: Corners,
+    crossings: Vec<Crossing>,
+    /// Those of them that meet the water of a map.
+    impacts: Vec<Impact>,
+    /// The cells of that map.
+    cells: Arc<[[f32; 4]]>,
+}
+
+/// A drop that meets water.
+#[derive(Clone, Copy, Debug)]
+struct Impact {
+    /// Where, m from the origin of the maps.
+    at: Vec2,
+    /// When it comes through the plane at the height of the map's middle, s, and how long before that it meets the water.
+    time_s: f64,
+    ago_s: f32,
+    /// m.
+    diameter: f32,
+    id: u64,
+}
+
+/// Where the water of a map is.
+#[derive(Debug)]
+struct Shores {
+    cells: Arc<[[f32; 4]]>,
+    /// In each square of the world the part in which drops may come to the water.
+    squares: BTreeMap<[i64; 2], Corners>,
+}
 
 /// Rings of the drops of a rain.
 #[derive(Debug)]
@@ -86,8 +131,12 @@ pub struct Rings {
     bins: Vec<Bin>,
     /// Smallest drop with a ring, m.
     smallest: f64,
-    slopes: Arc<Vec<[u32; 4]>>,
-    found: BTreeMap<Block, Vec<Crossing>>,
+    slopes: Arc<[[u32; 4]]>,
+    found: BTreeMap<Block, Found>,
+    /// Of each puddle.
+    shores: BTreeMap<usize, Shores>,
+    /// Of the maps.
+    origin: DVec3,
 }
 
 /// The rain on the water of a picture.
@@ -104,9 +153,9 @@ pub struct RainOnWater<'a> {
 }
 
 /// Rings of a picture, as rows of the scene's table.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RingRows {
-    slopes: Arc<Vec<[u32; 4]>>,
+    slopes: Arc<[[u32; 4]]>,
     /// Number of the first ring of each cell, and that behind the last.
     cells: Vec<u32>,
     /// Place in the cell, age and size.
@@ -117,14 +166,10 @@ pub struct RingRows {
     middle: Vec2,
 }
 
-/// Position of a puddle's rings in a picture.
-struct Placing<'a> {
-    map: &'a PuddleMap,
-    /// Of its map.
-    turn: Vec2,
-    /// Of the positions of maps, m in the world.
-    origin: DVec3,
-    /// Of the cells, m from there.
+/// Rings in a picture.
+struct Placing {
+    time_s: f64,
+    /// Of the cells, m from the origin of the maps.
     corner: Vec2,
     /// The eye, m from there.
     middle: Vec2,
@@ -159,8 +204,16 @@ impl Rings {
         let bins = (0..BINS).into_par_iter().map(bin).collect::<Result<Vec<Bin>, PuddleError>>()?;
         let area = f64::from(PUDDLE_RINGS_CELL * PUDDLE_RINGS_CELL);
         let smallest = smallest_of(&bins, heaviest, EXPECTED_IN_CELL / area).max(MIN_DIAMETER_M);
-        let slopes = Arc::new(slopes(&law, smallest)?);
-        Ok(Self { heaviest: heaviest.clone(), bins, smallest, slopes, found: BTreeMap::new() })
+        let slopes = slopes(&law, smallest)?.into();
+        Ok(Self {
+            heaviest: heaviest.clone(),
+            bins,
+            smallest,
+            slopes,
+            found: BTreeMap::new(),
+            shores: BTreeMap::new(),
+            origin: DVec3::ZERO,
+        })
     }
 
     /// Finds the rings of a picture on puddles whose positions are relative to `origin`.
@@ -180,26 +233,18 @@ impl Rings {
         let life = f64::from(PUDDLE_RINGS_LIFE);
         let most = EXPECTED_RINGS / (life * area.max(1.0e-6));
         let smallest = smallest_of(&self.bins, &self.heaviest, most).max(self.smallest);
-        let wanted = with_rings().flat_map(|(k, (map, _))| blocks(k, map, origin, rain));
-        let wanted: Vec<(Block, [DVec2; 2], f64)> = wanted.collect();
-        let mut before = std::mem::take(&mut self.found);
-        let known: Vec<_> = wanted.into_iter().map(|block| (before.remove(&block.0), block)).collect();
-        let found = known.into_par_iter().map(|(known, (block, corners, height))| {
-            let span_s = [block.2, block.2 + 1].map(|k| k as f64 * CHUNK_S);
-            let find = || rain.field.crossings(corners, height, span_s, self.smallest);
-            Ok((block, known.map_or_else(find, Ok)?))
-        });
-        self.found = found.collect::<Result<_, PuddleError>>()?;
+        self.find_drops(rain, puddles, origin)?;
         let corner = ((middle - REACH_M as f32) / PUDDLE_RINGS_CELL).floor() * PUDDLE_RINGS_CELL;
+        let placing = Placing { time_s: rain.time_s, corner, middle };
         // Where puddles overlap, the ring is the first one's.
+        let grounds: Vec<&Ground> = with_rings().map(|(_, (map, _))| &map.ground).collect();
+        let overlap = grounds.iter().enumerate().any(|(k, a)| grounds[..k].iter().any(|b| a.may_overlap(b)));
         let mut known = HashSet::new();
         let mut placed: Vec<Placed> = Vec::new();
-        for ((puddle, ..), crossings) in &self.found {
-            let map = &puddles[*puddle].0;
-            let placing = Placing { map, turn: turned(map.ground.turn), origin, corner, middle };
-            for crossing in crossings.iter().filter(|crossing| f64::from(crossing.diameter) >= smallest) {
-                let ring = self.placed(crossing, &placing, rain.time_s);
-                placed.extend(ring.filter(|_| known.insert(crossing.id)));
+        for found in self.found.values() {
+            for impact in found.impacts.iter().filter(|impact| f64::from(impact.diameter) >= smallest) {
+                let ring = self.placed(impact, &placing);
+                placed.extend(ring.filter(|_| !overlap || known.insert(impact.id)));
             }
         }
         placed.sort_unstable();
@@ -216,32 +261,82 @@ impl Rings {
         Ok(RingRows { slopes: Arc::clone(&self.slopes), cells, rings, part, corner, middle })
     }
 
+    /// Finds the drops whose rings are in a picture, and some of those of the pictures to come; forgets all others.
+    fn find_drops(
+        &mut self,
+        rain: &RainOnWater<'_>,
+        puddles: &[(PuddleMap, PuddleLook)],
+        origin: DVec3,
+    ) -> Result<(), PuddleError> {
+        if self.origin != origin {
+            self.found.clear();
+            self.shores.clear();
+            self.origin = origin;
+        }
+        let mut wanted = Vec::new();
+        for (k, (map, _)) in puddles.iter().enumerate().filter(|(_, (_, look))| look.has_rings()) {
+            let known = self.shores.remove(&k).filter(|shores| Arc::ptr_eq(&shores.cells, &map.cells));
+            let shores = self.shores.entry(k).or_insert(known.unwrap_or_else(|| Shores::new(map, origin)));
+            wanted.extend(blocks(k, map, shores, rain));
+        }
+        let mut before = std::mem::take(&mut self.found);
+        let mut anew = Vec::new();
+        let mut room = wanted.iter().filter(|wanted| wanted.is_next).count().div_ceil(SHARES);
+        for Wanted { block, part, is_next } in wanted {
+            let known = before
+                .remove(&block)
+                .filter(|found| found.part[0].cmple(part[0]).all() && found.part[1].cmpge(part[1]).all());
+            let map = &puddles[block.0].0;
+            match known {
+                Some(found) if Arc::ptr_eq(&found.cells, &map.cells) => {
+                    self.found.insert(block, found);
+                }
+                None if is_next && room == 0 => {}
+                known => {
+                    room -= usize::from(is_next && known.is_none());
+                    anew.push((block, part, is_next, known));
+                }
+            }
+        }
+        let found = anew.into_par_iter().filter_map(|(block, part, is_next, known)| {
+            let map = &puddles[block.0].0;
+            let span_s = [block.2, block.2 + 1].map(|k| k as f64 * CHUNK_S);
+            let height = origin.y + f64::from(map.ground.middle.y);
+            let known = known.map(|found| Ok((found.part, found.crossings)));
+            let crossings = known
+                .unwrap_or_else(|| Ok((part, rain.field.crossings(part, height, span_s, self.smallest)?)));
+            match crossings {
+                Ok((part, crossings)) => {
+                    let impacts = impacts(map, origin, &crossings);
+                    Some(Ok((block, Found { part, crossings, impacts, cells: Arc::clone(&map.cells) })))
+                }
+                // There may be no next span: time has an end.
+                Err(_) if is_next => None,
+                Err(error) => Some(Err(error)),
+            }
+        });
+        let found = found.collect::<Result<Vec<_>, PuddleError>>()?;
+        self.found.extend(found);
+        Ok(())
+    }
+
     /// The ring of a drop in a picture; `None` if there is none.
-    fn placed(&self, crossing: &Crossing, placing: &Placing<'_>, time_s: f64) -> Option<Placed> {
-        let Placing { map, turn, origin, corner, middle } = *placing;
-        let at = (crossing.position - origin).as_vec3();
-        let [rise, _] = map.surface(turn, at)?;
-        // From the height of the map's middle to the surface.
-        let ago = rise / crossing.velocity.y.min(-0.1);
-        let at = at + crossing.velocity * ago;
-        let [_, open] = map.surface(turn, at)?;
-        let age = ((time_s - crossing.time_s) as f32 - ago) / PUDDLE_RINGS_LIFE;
-        // Where a part of the rain arrives, a part of the drops does.
-        let chance = (crossing.id >> 40) as f32 / 16_777_216.0;
-        let on_ground = Vec2::new(at.x, at.z);
+    fn placed(&self, impact: &Impact, placing: &Placing) -> Option<Placed> {
+        let Placing { time_s, corner, middle } = *placing;
+        let age = ((time_s - impact.time_s) as f32 - impact.ago_s) / PUDDLE_RINGS_LIFE;
         // No ring is wider than a cell.
-        let is_near = on_ground.distance(middle) < REACH_M as f32 + PUDDLE_RINGS_CELL;
-        if !is_near || !(0.0..1.0).contains(&age) || chance >= open {
+        let is_near = impact.at.distance(middle) < REACH_M as f32 + PUDDLE_RINGS_CELL;
+        if !is_near || !(0.0..1.0).contains(&age) {
             return None;
         }
-        let place = (on_ground - corner) / PUDDLE_RINGS_CELL;
+        let place = (impact.at - corner) / PUDDLE_RINGS_CELL;
         let cell = place.floor();
         let [x, z] =
             [cell.x, cell.y].map(|n| if n >= 0.0 && n < CELLS as f32 { Some(n as usize) } else { None });
         let units = |part: f32| (part * 65536.0).clamp(0.0, 65535.0) as u32;
         let within = place - cell;
         let size =
-            ops::ln(f64::from(crossing.diameter) / self.smallest) / ops::ln(DIAMETERS_M[1] / self.smallest);
+            ops::ln(f64::from(impact.diameter) / self.smallest) / ops::ln(DIAMETERS_M[1] / self.smallest);
         let words = [units(within.x) | units(within.y) << 16, units(age) | units(size as f32) << 16];
         Some((z? * CELLS + x?, words))
     }
@@ -319,34 +414,100 @@ fn area_near(map: &PuddleMap, middle: Vec2) -> f64 {
     area * f64::from(wet) / f64::from(all.max(1))
 }
 
-/// Squares of the world and spans of time in which drops come through the water of puddle `k` that make rings in a picture, each with
-/// the corners of the part that the puddle covers, and the height, m.
-fn blocks(k: usize, map: &PuddleMap, origin: DVec3, rain: &RainOnWater<'_>) -> Vec<(Block, [DVec2; 2], f64)> {
-    let extent = map.ground.extent();
-    let middle = origin + map.ground.middle.as_dvec3();
-    let height = middle.y;
-    let (middle, eye) = (DVec2::new(middle.x, middle.z), DVec2::new(rain.eye.x, rain.eye.z));
-    // Between the middle's height and the surface the wind carries drops aside.
-    let low = (middle - extent - 0.25).max(eye - REACH_M);
-    let high = (middle + extent + 0.25).min(eye + REACH_M);
-    if !low.cmplt(high).all() {
-        return Vec::new();
-    }
-    let [first, last] = [low, high].map(|corner| (corner / BLOCK_M).floor().as_i64vec2());
+/// A block whose drops are wanted.
+struct Wanted {
+    block: Block,
+    /// Where they may come to the water.
+    part: Corners,
+    /// True for the span of time after those of the picture.
+    is_next: bool,
+}
+
+/// Squares of the world and spans of time in which drops come through the water of puddle `k` that make rings in a picture, and then
+/// those of the span after them.
+fn blocks(
+    k: usize,
+    map: &PuddleMap,
+    shores: &Shores,
+    rain: &RainOnWater<'_>,
+) -> impl Iterator<Item = Wanted> {
+    let eye = DVec2::new(rain.eye.x, rain.eye.z);
+    let squares: Vec<([i64; 2], Corners)> = shores
+        .squares
+        .iter()
+        .filter(|([x, z], _)| {
+            let corner = DVec2::new(*x as f64, *z as f64) * BLOCK_M;
+            corner.cmplt(eye + REACH_M).all() && (corner + BLOCK_M).cmpgt(eye - REACH_M).all()
+        })
+        .map(|(&square, &part)| (square, part))
+        .collect();
     let life = f64::from(PUDDLE_RINGS_LIFE);
     // Drops may come to the surface a little before or after they come to the middle's height.
     let slack = f64::from(map.ground.reach) / 4.0;
     let spans = [rain.time_s - life - slack, rain.time_s + slack].map(|time| (time / CHUNK_S).floor() as i64);
-    let mut blocks = Vec::new();
-    for x in first.x..=last.x {
-        for z in first.y..=last.y {
-            let corner = DVec2::new(x as f64, z as f64) * BLOCK_M;
-            // All of the puddle in the block, whatever the eye sees of it.
-            let part = [corner.max(middle - extent - 0.25), (corner + BLOCK_M).min(middle + extent + 0.25)];
-            blocks.extend((spans[0]..=spans[1]).map(|span| ((k, [x, z], span), part, height)));
+    (spans[0]..=spans[1] + 1).flat_map(move |span| {
+        let wanted =
+            move |(square, part)| Wanted { block: (k, square, span), part, is_next: span > spans[1] };
+        squares.clone().into_iter().map(wanted)
+    })
+}
+
+/// The drops that meet the water of a map.
+fn impacts(map: &PuddleMap, origin: DVec3, crossings: &[Crossing]) -> Vec<Impact> {
+    let turn = turned(map.ground.turn);
+    let impact = |crossing: &Crossing| {
+        let at = (crossing.position - origin).as_vec3();
+        let [rise, _] = map.surface(turn, at)?;
+        // From the height of the map's middle to the surface.
+        let ago_s = rise / crossing.velocity.y.min(-0.1);
+        let at = at + crossing.velocity * ago_s;
+        let [_, open] = map.surface(turn, at)?;
+        // Where a part of the rain arrives, a part of the drops does.
+        let chance = (crossing.id >> 40) as f32 / 16_777_216.0;
+        let (time_s, diameter, id) = (crossing.time_s, crossing.diameter, crossing.id);
+        (chance < open).then_some(Impact { at: Vec2::new(at.x, at.z), time_s, ago_s, diameter, id })
+    };
+    crossings.iter().filter_map(impact).collect()
+}
+
+impl Shores {
+    /// Of a map whose position is relative to `origin`.
+    fn new(map: &PuddleMap, origin: DVec3) -> Self {
+        let mut squares: BTreeMap<[i64; 2], Corners> = BTreeMap::new();
+        let [columns, rows] = map.size;
+        let origin = DVec2::new(origin.x, origin.z);
+        for y in 0..rows {
+            let row = &map.cells[y * columns..(y + 1) * columns];
+            for (k, cells) in row.chunks(CELLS_BOUNDED).enumerate() {
+                let is_wet = |cell: &[f32; 4]| cell[2] >= PUDDLE_WATER_MIN_DEPTH;
+                let (Some(first), Some(last)) =
+                    (cells.iter().position(is_wet), cells.iter().rposition(is_wet))
+                else {
+                    continue;
+                };
+                let part = |at: usize, count: usize| at as f32 / count as f32;
+                let across = [first, last + 1].map(|x| part(k * CELLS_BOUNDED + x, columns));
+                let down = [y, y + 1].map(|y| part(y, rows));
+                let corners =
+                    across.iter().flat_map(|&u| down.iter().map(move |&v| map.ground.position(u, v)));
+                let corners = corners.map(|at| origin + DVec2::new(f64::from(at.x), f64::from(at.z)));
+                let (low, high) = corners.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), at| {
+                    (low.min(at), high.max(at))
+                });
+                // In whole steps: water that rises a little moves nothing.
+                let low = (low / ASIDE_M - 1.0).floor() * ASIDE_M;
+                let high = (high / ASIDE_M + 1.0).ceil() * ASIDE_M;
+                let [from, to] = [(low / BLOCK_M).floor().as_i64vec2(), (high / BLOCK_M).ceil().as_i64vec2()];
+                for square in (from.x..to.x).flat_map(|x| (from.y..to.y).map(move |z| [x, z])) {
+                    let corner = DVec2::new(square[0] as f64, square[1] as f64) * BLOCK_M;
+                    let part = [corner.max(low), (corner + BLOCK_M).min(high)];
+                    let bounds = squares.entry(square).or_insert(part);
+                    *bounds = [bounds[0].min(part[0]), bounds[1].max(part[1])];
+                }
+            }
         }
+        Self { cells: Arc::clone(&map.cells), squares }
     }
-    blocks
 }
 
 impl PuddleMap {
@@ -365,24 +526,31 @@ impl RingRows {
         self.rings.len()
     }
 
-    /// Rows that say where the others are, which begin at row `first`; positions are shifted by so many meters.
+    /// Slopes of rings of all sizes and ages, which all pictures of a rain share.
+    pub(super) fn slopes(&self) -> Arc<[[u32; 4]]> {
+        Arc::clone(&self.slopes)
+    }
+
+    /// Rows that say where the others are: cells and rings begin at row `first`, and of the slopes nobody knows it yet; positions are
+    /// shifted by so many meters.
     pub(super) fn head(&self, first: u32, shift: Vec3) -> [[u32; 4]; PUDDLE_RINGS_ROWS as usize] {
-        let cells = first + self.slopes.len() as u32;
-        let rings = cells + self.cells.len().div_ceil(4) as u32;
+        let rings = first + self.cells.len().div_ceil(8) as u32;
         let shift = Vec2::new(shift.x, shift.z);
         let (corner, middle) = (self.corner + shift, self.middle + shift);
         [
-            [CELLS as u32, CELLS as u32, cells, rings],
-            [first, self.part.to_bits(), (REACH_M as f32).to_bits(), 0],
+            [CELLS as u32, CELLS as u32, first, rings],
+            [0, self.part.to_bits(), (REACH_M as f32).to_bits(), 0],
             [corner.x, corner.y, middle.x, middle.y].map(f32::to_bits),
         ]
     }
 
-    /// Adds the rows of slopes, cells and rings: as many for any number of rings.
+    /// Adds the rows of cells and rings: as many for any number of rings.
     pub(super) fn extend(&self, table: &mut Vec<[u32; 4]>) {
-        table.extend(self.slopes.iter());
         let row = |words: &[u32]| std::array::from_fn(|k| words.get(k).copied().unwrap_or_default());
-        table.extend(self.cells.chunks(4).map(row));
+        // Two cells in a word: there are not as many rings as would not fit.
+        let pair = |k: usize| self.cells[k] | self.cells.get(k + 1).map_or(0, |next| next << 16);
+        let cells: Vec<u32> = (0..self.cells.len()).step_by(2).map(pair).collect();
+        table.extend(cells.chunks(4).map(row));
         let end = table.len() + MAX_RINGS / 2;
         table.extend(self.rings.as_flattened().chunks(4).map(row));
         table.resize(end, [0; 4]);
@@ -428,6 +596,39 @@ mod tests {
 
     fn on_water(field: &RainField, time_s: f64) -> RainOnWater<'_> {
         RainOnWater { field, sizes: None, time_s, eye: DVec3::new(1.0, 1.8, 0.0) }
+    }
+
+    /// A picture of a clip has the rings that it has alone, also where the water has risen in between.
+    #[test]
+    fn rings_do_not_depend_on_pictures_before() {
+        let law = rain(60.0);
+        let field = RainField::new(&law, SEED).unwrap();
+        let puddles = |wet: usize| {
+            let (map, look) = pool();
+            let cells = (0..1600).map(|i| {
+                let depth = if i / 40 < wet { 0.02 } else { -1.0 };
+                [-0.01, 0.02, depth, 1.0]
+            });
+            let far = Ground { middle: Vec3::new(3.5, 0.2, -3.0), ..map.ground };
+            let other = PuddleMap { ground: far, ..map.clone() };
+            [(PuddleMap { cells: cells.collect(), ..map }, look), (other, look)]
+        };
+        let before = puddles(9);
+        let (mut clip, origin) = (Rings::new(&law).unwrap(), DVec3::new(1000.0, 0.0, 0.0));
+        let mut counts = Vec::new();
+        for frame in 0..40u8 {
+            let time_s = 5.0 + f64::from(frame) / 30.0;
+            let now = if frame < 17 { before.clone() } else { puddles(usize::from(frame)) };
+            let eye = origin + DVec3::new(1.0 + 0.3 * f64::from(frame), 1.8, 0.0);
+            let picture = RainOnWater { field: &field, sizes: None, time_s, eye };
+            let rings = clip.find(&picture, &now, origin).unwrap();
+            if frame % 3 == 1 {
+                let alone = Rings::new(&law).unwrap().find(&picture, &now, origin).unwrap();
+                assert!(alone == rings, "{frame}: {} and {}", alone.count(), rings.count());
+            }
+            counts.push(rings.count());
+        }
+        assert!(counts.iter().all(|&count| count > 100), "{counts:?}");
     }
 
     /// Rings have the part of the mean square of the slope that is taken off the lattice.

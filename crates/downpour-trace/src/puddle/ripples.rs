@@ -26,6 +26,10 @@ const STEP_S: f64 = 5.0e-3;
 /// Ripples older than this have gone, s.
 pub(super) const MEMORY_S: f64 = 2.5;
 
+/// Steps that a device gets in one submission.
+#[cfg(feature = "wgpu")]
+const STEPS_TOGETHER: usize = 50;
+
 /// Steps with rain of one rate, where the rate changes: a quarter of a second.
 const STEPS_OF_RATE: i64 = 50;
 
@@ -64,21 +68,22 @@ impl Lattice {
         Ok(())
     }
 
-    fn seed(&mut self, impacts: &[Impact]) -> Result<(), PuddleError> {
+    /// Steps, each after the impacts in it.
+    fn rain(&mut self, impacts: &[Vec<Impact>]) -> Result<(), PuddleError> {
         match self {
-            Self::Cpu(lattice) => lattice.seed(impacts)?,
+            Self::Cpu(lattice) => {
+                for impacts in impacts {
+                    lattice.seed(impacts)?;
+                    lattice.step(STEP_S as f32)?;
+                }
+            }
             #[cfg(feature = "wgpu")]
-            Self::Gpu { lattice, .. } => lattice.seed(impacts)?,
+            Self::Gpu { lattice, .. } => {
+                for impacts in impacts.chunks(STEPS_TOGETHER) {
+                    lattice.rain(impacts, STEP_S as f32)?;
+                }
+            }
         }
-        Ok(())
-    }
-
-    fn step(&mut self) -> Result<(), PuddleError> {
-        match self {
-            Self::Cpu(lattice) => lattice.step(STEP_S as f32)?,
-            #[cfg(feature = "wgpu")]
-            Self::Gpu { lattice, .. } => lattice.step(STEP_S as f32)?,
-        };
         Ok(())
     }
 }
@@ -184,21 +189,22 @@ impl Ripples {
             (self.is_level, self.step) = (true, anew);
         }
         let extent = [CELLS as f32 * CELL_M; 2];
+        let mut steps = Vec::new();
         while self.step < until {
             if let Some(changes) = &mut self.changes {
                 changes.follow(self.step, &mut self.rain)?;
             }
-            if let Some(rain) = &self.rain {
-                let impacts = rain.impacts(extent, self.step as u64, STEP_S as f32)?;
-                self.is_level &= impacts.is_empty();
-                self.lattice.seed(&impacts)?;
-            }
+            let rain = self.rain.as_ref();
+            let impacts =
+                rain.map(|rain| rain.impacts(extent, self.step as u64, STEP_S as f32)).transpose()?;
+            let impacts = impacts.unwrap_or_default();
+            self.is_level &= impacts.is_empty();
             if !self.is_level {
-                self.lattice.step()?;
+                steps.push(impacts);
             }
             self.step += 1;
         }
-        Ok(())
+        self.lattice.rain(&steps)
     }
 
     /// Cells along an edge of the finest level, the number of levels, and the edge of a cell (m).

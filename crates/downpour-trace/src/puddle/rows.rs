@@ -1,5 +1,7 @@
 //! Puddles as rows of the scene's table. Twin of `shaders/wgsl/render/puddle.wgsl`.
 
+use std::sync::Arc;
+
 use downpour_shaders::render::puddle_rings::PUDDLE_RINGS_ROWS;
 use downpour_shaders::render::puddle_wake::PUDDLE_WAKE_ROW;
 use downpour_shaders::render::puddle_water::{PUDDLE_WATER_MAX_COUNT, PUDDLE_WATER_ROWS};
@@ -9,6 +11,7 @@ use super::map::{PuddleMap, turned};
 use super::rings::RingRows;
 use super::wakes::WakeRows;
 use crate::data::SceneData;
+use crate::shared_rows::SharedRows;
 
 /// Appearance of a puddle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,7 +137,7 @@ impl SceneData {
 
     /// Reads a texel of a map or of the ripples.
     pub(crate) fn puddle_texel(&self, row: u32) -> Vec4 {
-        Vec4::from(self.table[row as usize].map(f32::from_bits))
+        Vec4::from(self.row(row).map(f32::from_bits))
     }
 
     /// Sets the puddles of the scene; replaces earlier ones.
@@ -143,6 +146,7 @@ impl SceneData {
         let pane = self.take_pane();
         if self.puddle_count > 0 {
             self.table.truncate(self.puddles as usize);
+            self.shared.clear();
         }
         let puddles = &rows.puddles[..rows.puddles.len().min(PUDDLE_WATER_MAX_COUNT as usize)];
         self.puddles = self.table.len() as u32;
@@ -161,7 +165,7 @@ impl SceneData {
     fn add_puddles(&mut self, puddles: &[(PuddleMap, PuddleLook)], rows: &PuddleRows<'_>) {
         let words = |numbers: [f32; 4]| numbers.map(f32::to_bits);
         let head = puddles.len() * PUDDLE_WATER_ROWS as usize + 1 + PUDDLE_RINGS_ROWS as usize;
-        let mut first = self.puddles + head as u32;
+        let first = self.puddles + head as u32;
         for (k, (map, look)) in (0u16..).zip(puddles) {
             let middle = map.ground.middle + rows.shift;
             let turn = turned(map.ground.turn);
@@ -172,7 +176,8 @@ impl SceneData {
             self.table.extend([
                 words([middle.x, middle.y, middle.z, 0.0]),
                 words([turn.x, turn.y, half.x, half.y]),
-                [map.size[0] as u32, map.size[1] as u32, first, 0],
+                // The first row of its map is known when the table is whole.
+                [map.size[0] as u32, map.size[1] as u32, 0, 0],
                 words([look.scale, ripples.x, ripples.y, look.influence]),
                 words([
                     look.scattering_albedo.x,
@@ -184,7 +189,6 @@ impl SceneData {
             ]);
             // No wakes, as far as it is known yet.
             self.table.push([0; 4]);
-            first += map.cells.len() as u32;
         }
         let (size, levels, cell) = rows.shape;
         let size = if rows.slopes.is_empty() { 0 } else { size };
@@ -193,13 +197,13 @@ impl SceneData {
         self.table.extend(
             rows.rings.map_or([[0; 4]; PUDDLE_RINGS_ROWS as usize], |rings| rings.head(behind, rows.shift)),
         );
-        for (map, _) in puddles {
-            self.table.extend(map.cells.iter().map(|&cell| words(cell)));
-        }
         self.table.extend(rows.slopes.iter().map(|&slope| words(slope)));
         if let Some(rings) = rows.rings {
             rings.extend(&mut self.table);
+            self.shared.push(SharedRows::Words(rings.slopes()));
         }
+        let maps = puddles.iter().map(|(map, _)| SharedRows::Numbers(Arc::clone(&map.cells)));
+        self.shared.extend(maps);
         for wake in rows.wakes.iter().filter(|wake| wake.puddle < puddles.len()) {
             let [columns, lines] = wake.size.map(|count| count as u32);
             let row = self.puddles + wake.puddle as u32 * PUDDLE_WATER_ROWS + PUDDLE_WAKE_ROW;

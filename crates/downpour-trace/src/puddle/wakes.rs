@@ -12,6 +12,7 @@
 //! moved through.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use downpour_lattice::puddle::{Puddle, PuddleForm, PuddleOptions, Wake};
 use downpour_shaders::render::puddle_water::PUDDLE_WATER_MIN_DEPTH;
@@ -94,6 +95,8 @@ struct Basin {
 pub struct Wakes {
     form: PuddleForm,
     basins: BTreeMap<usize, Basin>,
+    /// Where the water of each puddle is, with the cells of the map of which that was found.
+    regions: Vec<(Arc<[[f32; 4]]>, Option<Region>)>,
     /// Number of the last step, counted from time 0.
     step: Option<i64>,
 }
@@ -102,7 +105,7 @@ impl Wakes {
     /// Level water, with waves of a law.
     #[must_use]
     pub fn new(form: PuddleForm) -> Self {
-        Self { form, basins: BTreeMap::new(), step: None }
+        Self { form, basins: BTreeMap::new(), regions: Vec::new(), step: None }
     }
 
     /// Steps the water to a time in seconds; `moving` finds the triangles of what moves at a time that may reach into a region, relative
@@ -126,7 +129,16 @@ impl Wakes {
                 anew
             }
         };
-        let regions: Vec<Option<Region>> = puddles.iter().map(|(map, _)| region(map)).collect();
+        let before = std::mem::take(&mut self.regions);
+        self.regions = puddles
+            .iter()
+            .enumerate()
+            .map(|(k, (map, _))| match before.get(k) {
+                Some(known) if Arc::ptr_eq(&known.0, &map.cells) => known.clone(),
+                _ => (Arc::clone(&map.cells), region(map)),
+            })
+            .collect();
+        let regions: Vec<Option<Region>> = self.regions.iter().map(|(_, region)| *region).collect();
         let Some(all) = regions.iter().flatten().copied().reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
         else {
             self.step = Some(until);

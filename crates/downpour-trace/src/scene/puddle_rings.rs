@@ -61,7 +61,12 @@ impl SceneData {
 
     /// A word of rows.
     fn puddle_rings_word(&self, first: u32, index: u32) -> u32 {
-        self.table[(first + index / 4) as usize][(index % 4) as usize]
+        self.row(first + index / 4)[(index % 4) as usize]
+    }
+
+    /// Number of the first ring of a cell.
+    fn puddle_rings_first(&self, rings: &PuddleRings, cell: u32) -> u32 {
+        self.puddle_rings_word(rings.first_cell, cell / 2) >> (16 * (cell & 1)) & 0xffff
     }
 
     /// A slope of the table: of a node of sizes, at a step of time and a step of distance.
@@ -116,7 +121,7 @@ impl SceneData {
                 continue;
             }
             let index = (cell.y * columns + cell.x) as u32;
-            let [begin, end] = [index, index + 1].map(|at| self.puddle_rings_word(rings.first_cell, at));
+            let [begin, end] = [index, index + 1].map(|at| self.puddle_rings_first(rings, at));
             let in_cell = (place - cell.as_vec2()) * PUDDLE_RINGS_CELL;
             for ring in begin..end {
                 sum += self.puddle_rings_one(rings, ring, in_cell);

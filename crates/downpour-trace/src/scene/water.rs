@@ -273,7 +273,7 @@ mod tests {
         let mean_square = finest.iter().map(|slope| slope[2]).sum::<f32>() / finest.len() as f32;
         let mut scene = SceneBuilder::new().build(&SkyLight::new(1, 1, &[[1.0; 3]]));
         let ground = Ground { middle: Vec3::ZERO, size: Vec2::splat(100.0), turn: 0.0, reach: 1.0 };
-        let map = PuddleMap { ground, size: [2, 2], cells: vec![[0.0, 0.0, 0.1, 1.0]; 4] };
+        let map = PuddleMap { ground, size: [2, 2], cells: [[0.0, 0.0, 0.1, 1.0]; 4].into() };
         scene.set_puddles(&PuddleRows {
             puddles: &[(map, PuddleLook { angle: 0.5, ..PuddleLook::default() })],
             shape: (u32::from(size), 8, 5.0e-3),
