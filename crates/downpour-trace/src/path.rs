@@ -30,14 +30,14 @@ use downpour_shaders::bvh::BVH_FAR;
 use downpour_shaders::render::path::{
     PATH_BETWEEN, PATH_BOUNCES, PATH_CANDIDATES, PATH_CURVED, PATH_CURVED_FRACTION, PATH_CURVED_PART,
     PATH_LATER_FRACTION, PATH_MIN_FACTOR, PATH_MIRROR_LAMPS, PATH_OCCLUSION, PATH_OPEN, PATH_OTHER,
-    PATH_PLAIN_GLOSS, PATH_SAME_FACET, PATH_SAME_PLANE, PATH_SECONDARY_ROUGHNESS, PATH_SHINES,
+    PATH_PLAIN_GLOSS, PATH_SAME_FACET, PATH_SAME_PLANE, PATH_SECONDARY_ROUGHNESS,
 };
 use downpour_shaders::render::puddle_water::{
     PUDDLE_WATER_DOWN, PUDDLE_WATER_INDEX, PUDDLE_WATER_MATERIAL, PUDDLE_WATER_RAYS, PUDDLE_WATER_RIPPLED,
 };
 use downpour_shaders::render::scene::{
-    SCENE_ALL_OUT, SCENE_FAR, SCENE_LAMP_GLASS, SCENE_LAYERS, SCENE_NONE, SCENE_PICTURE, SCENE_SEEN_BODY,
-    SCENE_UNLIT, SKYLIGHT_SLACK, TEXTURE_TAPS,
+    SCENE_ALL_OUT, SCENE_FAR, SCENE_LAMP_GLASS, SCENE_LAYERS, SCENE_NONE, SCENE_PICTURE, SCENE_SEEN_AREA,
+    SCENE_SEEN_BODY, SCENE_UNLIT, SKYLIGHT_SLACK, TEXTURE_TAPS,
 };
 use downpour_shaders::render::translucent::TRANSLUCENT_SIDE;
 use downpour_shaders::render::wet::WET_FAR;
@@ -192,7 +192,7 @@ struct PathMeeting {
     direct: Vec3,
     /// Light of surfaces that shine, and of lamps with soft shadows, on its diffuse base, over pi.
     glow: Vec3,
-    /// Light of the latter that its gloss shows.
+    /// Light of the latter that its gloss shows, and of the former where it is wide.
     sheen: Vec3,
     /// Part of that light that the relief of the surface leaves.
     relief: f32,
@@ -512,7 +512,7 @@ impl SceneView<'_> {
                 let standoff = hit.distance * ray.width * 0.5;
                 // Surfaces that shine are lights: rays see them in a gloss only.
                 let is_lamp = found.flags & SCENE_LAMP_GLASS != 0;
-                if followed < if is_lamp { SCENE_SEEN_BODY } else { PATH_SHINES } {
+                if followed < if is_lamp { SCENE_SEEN_BODY } else { SCENE_SEEN_AREA } {
                     light.mirror += ray.mirror * found.emission * path_cover(&found);
                 }
                 let unlit = found.flags & SCENE_UNLIT != 0;
@@ -655,10 +655,6 @@ impl SceneView<'_> {
             if plan.kept {
                 mirror = in_mirror();
             }
-        }
-        if surface.roughness >= PATH_SHINES {
-            // The widest lobes see of what shines about what the diffuse base sees.
-            mirror += glow;
         }
         if plan.mirrors + plan.rays == 0 && !plan.spared {
             base = self.data.translucent_sky(&surface) + glow;

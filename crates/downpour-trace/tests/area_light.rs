@@ -266,6 +266,98 @@ fn the_sheen_of_a_lamp_has_its_soft_shadow_without_noise() -> Outcome {
     Ok(())
 }
 
+/// Radiance of black ground, rough and of index 1.5, in light of an irradiance from a direction: D G F / 4 over the cosine of the view,
+/// by Walter et al. 2007 and Heitz 2014.
+fn ggx(roughness: f64, view: DVec3, light: DVec3, irradiance: f64) -> f64 {
+    let a2 = exact::pow(roughness, 4.0);
+    let half = (view + light).normalize();
+    let d = a2 / (PI * exact::pow(half.y * half.y * (a2 - 1.0) + 1.0, 2.0));
+    let lambda = |cosine: f64| 0.5 * ((1.0 + a2 * (1.0 / (cosine * cosine) - 1.0)).sqrt() - 1.0);
+    let g = 1.0 / (1.0 + lambda(view.y) + lambda(light.y));
+    let f = 0.04 + 0.96 * exact::pow(1.0 - view.dot(half), 5.0);
+    irradiance * d * g * f / (4.0 * view.y)
+}
+
+/// What a gloss shows of the sun and of a lamp it shows once, however rough it is and however large they are.
+#[test]
+fn a_gloss_shows_a_lamp_once() -> Outcome {
+    let towards = DVec3::new(-0.3, 0.8, 0.5).normalize();
+    for roughness in [0.4f32, 0.55, 0.65, 0.8, 1.0] {
+        let look = MaterialLook { base_color: [0.0, 0.0, 0.0, 1.0], roughness, ..MaterialLook::default() };
+        let mut builder = SceneBuilder::new();
+        let floor = builder.add_material(look);
+        rectangle(&mut builder, floor, Vec3::ZERO, [Vec3::Z * 20.0, Vec3::X * 20.0], 1);
+        let build = || builder.clone().build(&SkyLight::uniform([0.0; 3]));
+        let eye = DVec3::new(1.0, 1.6, 2.0);
+        let view = Viewpoint { eye: eye.as_vec3(), forward: -eye.as_vec3(), up: Vec3::Y, fov_y: 0.02 };
+        for (name, radius, place) in [("sun", 0.0, None), ("sun", 0.03, None), ("lamp", 0.2, Some(5.0))] {
+            let mut scene = build();
+            let irradiance = 3.0;
+            scene.set_lights(&[match place {
+                None => LightSource::Directional {
+                    direction: -towards.as_vec3(),
+                    irradiance: Vec3::splat(irradiance as f32),
+                },
+                Some(distance) => LightSource::Point {
+                    radius,
+                    position: (towards * distance).as_vec3(),
+                    intensity: Vec3::splat((irradiance * distance * distance) as f32),
+                    range: 0.0,
+                },
+            }]);
+            if place.is_none() && radius > 0.0 {
+                scene.set_light_radius(0, radius);
+            }
+            for sky_rays in [0, 4] {
+                let frame = RenderFrame::new(&scene, &view, [24, 24], 1, sky_rays, 5)?;
+                let picture = SceneView { data: &scene, frame: &frame }.picture();
+                let found = mean(&picture.iter().map(|pixel| f64::from(pixel[1])).collect::<Vec<f64>>());
+                let wanted = ggx(f64::from(roughness), eye.normalize(), towards, irradiance);
+                println!(
+                    "{name} {radius}, roughness {roughness}, {sky_rays} rays: {found:.5} of {wanted:.5}"
+                );
+                assert!((found / wanted - 1.0).abs() < 0.03, "{name} {radius} {roughness} {sky_rays}");
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A rough gloss shows a panel as the sum over all of its places says, drawn as a light or met by rays.
+#[test]
+fn a_gloss_shows_a_panel_once() -> Outcome {
+    let (middle, half, radiance) = (DVec3::new(-0.6, 1.5, -1.0), 0.5, 10.0);
+    let eye = DVec3::new(0.8, 1.6, 1.8);
+    let steps = 200u32;
+    let place = |k: u32| (f64::from(k) + 0.5) / f64::from(steps) * 2.0 * half - half;
+    for roughness in [0.45f32, 0.58, 0.6, 0.8, 1.0] {
+        let mut builder = SceneBuilder::new();
+        let look = MaterialLook { base_color: [0.0, 0.0, 0.0, 1.0], roughness, ..MaterialLook::default() };
+        let floor = builder.add_material(look);
+        rectangle(&mut builder, floor, Vec3::ZERO, [Vec3::Z * 20.0, Vec3::X * 20.0], 1);
+        let panel = builder.add_material(matte(0.0, radiance as f32));
+        let edges = [Vec3::X * half as f32, Vec3::Z * half as f32];
+        rectangle(&mut builder, panel, middle.as_vec3(), edges, 3);
+        let scene = builder.build(&SkyLight::uniform([0.0; 3]));
+        let forward = -eye.as_vec3();
+        let view = Viewpoint { eye: eye.as_vec3(), forward, up: Vec3::Y, fov_y: 0.02 };
+        let frame = RenderFrame::new(&scene, &view, [32, 32], 1, 16, 5)?;
+        let picture = SceneView { data: &scene, frame: &frame }.picture();
+        let found = mean(&picture.iter().map(|pixel| f64::from(pixel[1])).collect::<Vec<f64>>());
+        let area = exact::pow(2.0 * half / f64::from(steps), 2.0);
+        let part = |i: u32| {
+            let at = middle + DVec3::new(place(i % steps), 0.0, place(i / steps));
+            let towards = at.normalize();
+            let solid = area * towards.y / at.length_squared();
+            ggx(f64::from(roughness), eye.normalize(), towards, radiance * solid)
+        };
+        let wanted: f64 = (0..steps * steps).map(part).sum();
+        println!("roughness {roughness}: {found:.5} of {wanted:.5}");
+        assert!((found / wanted - 1.0).abs() < 0.05, "{roughness}: {found}, {wanted}");
+    }
+    Ok(())
+}
+
 /// The same of the sun, by the angle of its disk.
 #[test]
 fn a_shadow_is_as_soft_as_the_sun_is_large() -> Outcome {

@@ -76,8 +76,6 @@ shared_constants! {
         PATH_SECONDARY_ROUGHNESS: f32 = 0.25;
         /// Maximum specular reflectance in that simplified form.
         PATH_SECONDARY_MAX_SPECULAR: f32 = 0.05;
-        /// Roughness of a gloss from which what shines is drawn as a light and not met by rays.
-        PATH_SHINES: f32 = 0.6;
         /// Minimum occlusion of a material that is taken back from light of lamps.
         PATH_OCCLUSION: f32 = 0.05;
         /// Makes other numbers of those of a ray.

@@ -128,6 +128,9 @@ shared_constants! {
         SCENE_SAME_SHADOW: f32 = 0.01;
         /// Roughness below which a gloss shows the glass of a lamp; from it on, the lamp's lobe.
         SCENE_SEEN_BODY: f32 = 0.2;
+        /// The same of surfaces that shine and are no lamp's glass. No number that materials have by hand, so that rounding does not
+        /// decide.
+        SCENE_SEEN_AREA: f32 = 0.59;
         /// Roughness from which means over neighbors are taken of what a gloss shows of lamps whose shadows are wide.
         SCENE_SHEEN: f32 = 0.35;
         /// Variance of slopes within a pixel from which they are not: neighbors of it may shine where it does not.

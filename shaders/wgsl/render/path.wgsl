@@ -83,7 +83,7 @@ struct PathMeeting {
     direct: vec3f,
     // Light of surfaces that shine, and of lamps with soft shadows, on its diffuse base, over pi.
     glow: vec3f,
-    // Light of the latter that its gloss shows.
+    // Light of the latter that its gloss shows, and of the former where it is wide.
     sheen: vec3f,
     // Part of that light that the relief of the surface leaves.
     relief: f32,
@@ -443,10 +443,6 @@ fn path_show(
             mirror = sky_cone(mirrored, scatter_mirror(surface, -towards).width);
         }
     }
-    if surface.roughness >= PATH_SHINES {
-        // The widest lobes see of what shines about what the diffuse base sees.
-        mirror += meeting.glow;
-    }
     if plan.mirrors + plan.rays == 0u && !plan.spared {
         base = translucent_sky(surface) + meeting.glow;
         mirror = sky_cone(mirrored, scatter_mirror(surface, -towards).width);
@@ -669,7 +665,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     standoff = hit.distance * ray.width * 0.5;
                     // Surfaces that shine are lights: rays see them in a gloss only.
                     emission = vec3f(0.0);
-                    if followed < select(PATH_SHINES, SCENE_SEEN_BODY, (found.flags & SCENE_LAMP_GLASS) != 0u) {
+                    if followed < select(SCENE_SEEN_AREA, SCENE_SEEN_BODY, (found.flags & SCENE_LAMP_GLASS) != 0u) {
                         light.mirror += ray.mirror * found.emission * path_cover(found);
                     }
                 }

@@ -32,7 +32,8 @@ struct SceneDirect {
     lit: vec3f,
     // On the diffuse base, over pi: of surfaces that shine, and of lamps with soft shadows. Means over neighbors are taken of it.
     glow: vec3f,
-    // Toward the viewer, from a rough gloss that lamps with soft shadows light: means over neighbors are taken of it, too.
+    // Toward the viewer, from a rough gloss that lamps with soft shadows light, and from a wide one that surfaces that shine light: means over
+    // neighbors are taken of it, too.
     sheen: vec3f,
     // What lamps of the latter give if nothing hides them: to the facet, and to the surface with its relief.
     flat_light: f32,
@@ -311,7 +312,8 @@ fn scene_direct(
                     }
                     bare.diffuse *= 1.0 - soft;
                 }
-                if !(is_first && is_area) {
+                // A narrow gloss sees an area by its rays.
+                if !(is_first && is_area && surface.roughness < SCENE_SEEN_AREA) {
                     lit = scene_lamp(bare, viewer, arrival, out, glossy && lamp.kind == SCENE_LIGHT_BODY);
                 }
             }

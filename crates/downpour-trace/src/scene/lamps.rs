@@ -13,9 +13,9 @@ use downpour_shaders::render::puddle_water::{PUDDLE_WATER_INDEX, PUDDLE_WATER_OU
 use downpour_shaders::render::scene::{
     SCENE_BLENDED, SCENE_DIGIT, SCENE_FAR, SCENE_LAMP_GLASS, SCENE_LARGE_LAMP, SCENE_LATTICE, SCENE_LAYERS,
     SCENE_LIGHT_AREA, SCENE_LIGHT_BODY, SCENE_MIN_COSINE, SCENE_MIN_LAMP, SCENE_MIN_ROUGHNESS,
-    SCENE_OTHER_DIGIT, SCENE_OTHER_LATTICE, SCENE_PICTURE, SCENE_SAME_SHADOW, SCENE_SEEN_BODY,
-    SCENE_SHADOW_M, SCENE_SHADOW_PART, SCENE_SHARP_PIXELS, SCENE_SHEEN, SCENE_SHEEN_VARIANCE,
-    SCENE_SPOT_GLASS,
+    SCENE_OTHER_DIGIT, SCENE_OTHER_LATTICE, SCENE_PICTURE, SCENE_SAME_SHADOW, SCENE_SEEN_AREA,
+    SCENE_SEEN_BODY, SCENE_SHADOW_M, SCENE_SHADOW_PART, SCENE_SHARP_PIXELS, SCENE_SHEEN,
+    SCENE_SHEEN_VARIANCE, SCENE_SPOT_GLASS,
 };
 use downpour_shaders::render::translucent::TRANSLUCENT_SIDE;
 use glam::{Vec2, Vec3};
@@ -83,7 +83,8 @@ pub(crate) struct SceneDirect {
     pub(crate) lit: Vec3,
     /// On the diffuse base, over pi: of surfaces that shine, and of lamps with soft shadows. Means over neighbors are taken of it.
     pub(crate) glow: Vec3,
-    /// Toward the viewer, from a rough gloss that lamps with soft shadows light: means over neighbors are taken of it, too.
+    /// Toward the viewer, from a rough gloss that lamps with soft shadows light, and from a wide one that surfaces that shine light: means over
+    /// neighbors are taken of it, too.
     pub(crate) sheen: Vec3,
     /// Light of lamps of the latter if nothing hides them: to the facet, and to the surface with its relief.
     pub(crate) flat_light: f32,
@@ -322,7 +323,8 @@ impl SceneView<'_> {
                 }
                 bare.diffuse *= 1.0 - share.soft;
             }
-            if !(is_first && is_area) {
+            // A narrow gloss sees an area by its rays.
+            if !(is_first && is_area && surface.roughness < SCENE_SEEN_AREA) {
                 let seen = glossy && lamp.kind == SCENE_LIGHT_BODY;
                 share.lit = self.scene_lamp(&bare, view, &arrival, out, seen);
             }
