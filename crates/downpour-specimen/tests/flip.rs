@@ -63,7 +63,7 @@ fn a_table_streak_looks_like_the_exact_one() {
         let sky = Sky::new(maps[map].width, maps[map].height, &maps[map].radiance).expect("a sky");
         let shape = DropShape::new(diameter_mm * 1.0e-3).expect("a diameter");
         let options = SpecimenOptions {
-            size: [32, 96],
+            size: [40, 120],
             samples: if map == night { 6 } else { 4 },
             instants: 64,
             pitch,
