@@ -13,6 +13,7 @@ mod error;
 pub mod fill;
 mod map;
 pub mod relief;
+mod ring_drops;
 mod rings;
 mod ripples;
 mod rows;

@@ -649,6 +649,9 @@ mod tests {
         }
     }
 
+    /// Puddles and wakes of a frame, and the bytes that it writes at least.
+    type Step<'a> = (&'a [(PuddleMap, PuddleLook)], &'a [WakeRows], usize);
+
     /// The table on the device is that of the scene, whatever of it has changed, and of maps that have not changed nothing is written.
     #[test]
     fn a_table_follows_its_scene() {
@@ -662,7 +665,7 @@ mod tests {
         let one = std::slice::from_ref(&large);
         let two = [large.clone(), small.clone()];
         let higher = [large.clone(), map([20, 20], 0.03)];
-        let steps: [(&[(PuddleMap, PuddleLook)], &[WakeRows], usize); 7] = [
+        let steps: [Step<'_>; 7] = [
             (&two, &[], 166_400),
             // A head or two.
             (&two, &[], 0),

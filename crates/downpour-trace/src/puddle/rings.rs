@@ -4,7 +4,7 @@
 //! picture shows falling. The larger ones near the eye make the ring of [`DropRing`] there; all the others are in the lattice of the
 //! ripples, from which the part of the larger ones is taken off. Rings are a function of time and eye alone.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use downpour_drop::distribution::DropSizeDistribution;
@@ -17,17 +17,17 @@ use downpour_shaders::render::puddle_rings::{
 };
 use downpour_shaders::render::puddle_water::PUDDLE_WATER_MIN_DEPTH;
 use downpour_sim::field::RainField;
-use downpour_sim::impacts::Crossing;
-use glam::{DVec2, DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use half::f16;
 use rayon::prelude::*;
 
-use super::map::{Ground, PuddleMap, turned};
+use super::map::{Ground, PuddleMap};
+use super::ring_drops::{Impact, RingDrops};
 use super::ripples::{MEMORY_S, options};
 use super::{PuddleError, PuddleLook};
 
 /// Distance along the ground from the eye up to which drops have rings, m. Farther away no picture shows waves of two centimeters.
-const REACH_M: f64 = 10.0;
+pub(super) const REACH_M: f64 = 10.0;
 
 /// Cells along an edge of the square around the eye: a cell more than its edge, since they begin at whole cells.
 const CELLS: usize = 81;
@@ -47,12 +47,6 @@ const BINS: u32 = 32;
 
 /// Smallest drop with a ring, m.
 const MIN_DIAMETER_M: f64 = 1.5e-3;
-
-/// Span of time whose drops are found together, s: whole sixteenths of a second.
-const CHUNK_S: f64 = 0.25;
-
-/// Edge of the squares of the world whose drops are found together, m.
-const BLOCK_M: f64 = 4.0;
 
 /// Cells of a puddle's map that are looked at for its area, at most, along an edge.
 const AREA_SAMPLES: usize = 32;
@@ -76,54 +70,6 @@ impl Bin {
     }
 }
 
-/// The wind carries drops aside by less than this between the height of a map's middle and the surface, m.
-const ASIDE_M: f64 = 0.25;
-
-/// Cells of a row of a map that are bounded together.
-const CELLS_BOUNDED: usize = 16;
-
-/// Parts in which the drops of the next span of time are found, one per picture, so that no picture has to find all of them.
-const SHARES: usize = 6;
-
-/// Puddle, square of the world and span of time whose drops are found together.
-type Block = (usize, [i64; 2], i64);
-
-/// Two corners of a rectangle in the world, m.
-type Corners = [DVec2; 2];
-
-/// Drops that come through the plane at the height of a map's middle.
-#[derive(Debug)]
-struct Found {
-    /// Where they were looked for.
-    part: Corners,
-    crossings: Vec<Crossing>,
-    /// Those of them that meet the water of a map.
-    impacts: Vec<Impact>,
-    /// The cells of that map.
-    cells: Arc<[[f32; 4]]>,
-}
-
-/// A drop that meets water.
-#[derive(Clone, Copy, Debug)]
-struct Impact {
-    /// Where, m from the origin of the maps.
-    at: Vec2,
-    /// When it comes through the plane at the height of the map's middle, s, and how long before that it meets the water.
-    time_s: f64,
-    ago_s: f32,
-    /// m.
-    diameter: f32,
-    id: u64,
-}
-
-/// Where the water of a map is.
-#[derive(Debug)]
-struct Shores {
-    cells: Arc<[[f32; 4]]>,
-    /// In each square of the world the part in which drops may come to the water.
-    squares: BTreeMap<[i64; 2], Corners>,
-}
-
 /// Rings of the drops of a rain.
 #[derive(Debug)]
 pub struct Rings {
@@ -132,11 +78,7 @@ pub struct Rings {
     /// Smallest drop with a ring, m.
     smallest: f64,
     slopes: Arc<[[u32; 4]]>,
-    found: BTreeMap<Block, Found>,
-    /// Of each puddle.
-    shores: BTreeMap<usize, Shores>,
-    /// Of the maps.
-    origin: DVec3,
+    drops: RingDrops,
 }
 
 /// The rain on the water of a picture.
@@ -205,15 +147,7 @@ impl Rings {
         let area = f64::from(PUDDLE_RINGS_CELL * PUDDLE_RINGS_CELL);
         let smallest = smallest_of(&bins, heaviest, EXPECTED_IN_CELL / area).max(MIN_DIAMETER_M);
         let slopes = slopes(&law, smallest)?.into();
-        Ok(Self {
-            heaviest: heaviest.clone(),
-            bins,
-            smallest,
-            slopes,
-            found: BTreeMap::new(),
-            shores: BTreeMap::new(),
-            origin: DVec3::ZERO,
-        })
+        Ok(Self { heaviest: heaviest.clone(), bins, smallest, slopes, drops: RingDrops::new(smallest) })
     }
 
     /// Finds the rings of a picture on puddles whose positions are relative to `origin`.
@@ -233,7 +167,7 @@ impl Rings {
         let life = f64::from(PUDDLE_RINGS_LIFE);
         let most = EXPECTED_RINGS / (life * area.max(1.0e-6));
         let smallest = smallest_of(&self.bins, &self.heaviest, most).max(self.smallest);
-        self.find_drops(rain, puddles, origin)?;
+        self.drops.find(rain, puddles, origin)?;
         let corner = ((middle - REACH_M as f32) / PUDDLE_RINGS_CELL).floor() * PUDDLE_RINGS_CELL;
         let placing = Placing { time_s: rain.time_s, corner, middle };
         // Where puddles overlap, the ring is the first one's.
@@ -241,11 +175,9 @@ impl Rings {
         let overlap = grounds.iter().enumerate().any(|(k, a)| grounds[..k].iter().any(|b| a.may_overlap(b)));
         let mut known = HashSet::new();
         let mut placed: Vec<Placed> = Vec::new();
-        for found in self.found.values() {
-            for impact in found.impacts.iter().filter(|impact| f64::from(impact.diameter) >= smallest) {
-                let ring = self.placed(impact, &placing);
-                placed.extend(ring.filter(|_| !overlap || known.insert(impact.id)));
-            }
+        for impact in self.drops.impacts().filter(|impact| f64::from(impact.diameter) >= smallest) {
+            let ring = self.placed(impact, &placing);
+            placed.extend(ring.filter(|_| !overlap || known.insert(impact.id)));
         }
         placed.sort_unstable();
         placed.truncate(MAX_RINGS);
@@ -259,65 +191,6 @@ impl Rings {
         let part = self.part(rain.sizes.unwrap_or(&self.heaviest), smallest);
         let rings = placed.into_iter().map(|(_, words)| words).collect();
         Ok(RingRows { slopes: Arc::clone(&self.slopes), cells, rings, part, corner, middle })
-    }
-
-    /// Finds the drops whose rings are in a picture, and some of those of the pictures to come; forgets all others.
-    fn find_drops(
-        &mut self,
-        rain: &RainOnWater<'_>,
-        puddles: &[(PuddleMap, PuddleLook)],
-        origin: DVec3,
-    ) -> Result<(), PuddleError> {
-        if self.origin != origin {
-            self.found.clear();
-            self.shores.clear();
-            self.origin = origin;
-        }
-        let mut wanted = Vec::new();
-        for (k, (map, _)) in puddles.iter().enumerate().filter(|(_, (_, look))| look.has_rings()) {
-            let known = self.shores.remove(&k).filter(|shores| Arc::ptr_eq(&shores.cells, &map.cells));
-            let shores = self.shores.entry(k).or_insert(known.unwrap_or_else(|| Shores::new(map, origin)));
-            wanted.extend(blocks(k, map, shores, rain));
-        }
-        let mut before = std::mem::take(&mut self.found);
-        let mut anew = Vec::new();
-        let mut room = wanted.iter().filter(|wanted| wanted.is_next).count().div_ceil(SHARES);
-        for Wanted { block, part, is_next } in wanted {
-            let known = before
-                .remove(&block)
-                .filter(|found| found.part[0].cmple(part[0]).all() && found.part[1].cmpge(part[1]).all());
-            let map = &puddles[block.0].0;
-            match known {
-                Some(found) if Arc::ptr_eq(&found.cells, &map.cells) => {
-                    self.found.insert(block, found);
-                }
-                None if is_next && room == 0 => {}
-                known => {
-                    room -= usize::from(is_next && known.is_none());
-                    anew.push((block, part, is_next, known));
-                }
-            }
-        }
-        let found = anew.into_par_iter().filter_map(|(block, part, is_next, known)| {
-            let map = &puddles[block.0].0;
-            let span_s = [block.2, block.2 + 1].map(|k| k as f64 * CHUNK_S);
-            let height = origin.y + f64::from(map.ground.middle.y);
-            let known = known.map(|found| Ok((found.part, found.crossings)));
-            let crossings = known
-                .unwrap_or_else(|| Ok((part, rain.field.crossings(part, height, span_s, self.smallest)?)));
-            match crossings {
-                Ok((part, crossings)) => {
-                    let impacts = impacts(map, origin, &crossings);
-                    Some(Ok((block, Found { part, crossings, impacts, cells: Arc::clone(&map.cells) })))
-                }
-                // There may be no next span: time has an end.
-                Err(_) if is_next => None,
-                Err(error) => Some(Err(error)),
-            }
-        });
-        let found = found.collect::<Result<Vec<_>, PuddleError>>()?;
-        self.found.extend(found);
-        Ok(())
     }
 
     /// The ring of a drop in a picture; `None` if there is none.
@@ -414,111 +287,6 @@ fn area_near(map: &PuddleMap, middle: Vec2) -> f64 {
     area * f64::from(wet) / f64::from(all.max(1))
 }
 
-/// A block whose drops are wanted.
-struct Wanted {
-    block: Block,
-    /// Where they may come to the water.
-    part: Corners,
-    /// True for the span of time after those of the picture.
-    is_next: bool,
-}
-
-/// Squares of the world and spans of time in which drops come through the water of puddle `k` that make rings in a picture, and then
-/// those of the span after them.
-fn blocks(
-    k: usize,
-    map: &PuddleMap,
-    shores: &Shores,
-    rain: &RainOnWater<'_>,
-) -> impl Iterator<Item = Wanted> {
-    let eye = DVec2::new(rain.eye.x, rain.eye.z);
-    let squares: Vec<([i64; 2], Corners)> = shores
-        .squares
-        .iter()
-        .filter(|([x, z], _)| {
-            let corner = DVec2::new(*x as f64, *z as f64) * BLOCK_M;
-            corner.cmplt(eye + REACH_M).all() && (corner + BLOCK_M).cmpgt(eye - REACH_M).all()
-        })
-        .map(|(&square, &part)| (square, part))
-        .collect();
-    let life = f64::from(PUDDLE_RINGS_LIFE);
-    // Drops may come to the surface a little before or after they come to the middle's height.
-    let slack = f64::from(map.ground.reach) / 4.0;
-    let spans = [rain.time_s - life - slack, rain.time_s + slack].map(|time| (time / CHUNK_S).floor() as i64);
-    (spans[0]..=spans[1] + 1).flat_map(move |span| {
-        let wanted =
-            move |(square, part)| Wanted { block: (k, square, span), part, is_next: span > spans[1] };
-        squares.clone().into_iter().map(wanted)
-    })
-}
-
-/// The drops that meet the water of a map.
-fn impacts(map: &PuddleMap, origin: DVec3, crossings: &[Crossing]) -> Vec<Impact> {
-    let turn = turned(map.ground.turn);
-    let impact = |crossing: &Crossing| {
-        let at = (crossing.position - origin).as_vec3();
-        let [rise, _] = map.surface(turn, at)?;
-        // From the height of the map's middle to the surface.
-        let ago_s = rise / crossing.velocity.y.min(-0.1);
-        let at = at + crossing.velocity * ago_s;
-        let [_, open] = map.surface(turn, at)?;
-        // Where a part of the rain arrives, a part of the drops does.
-        let chance = (crossing.id >> 40) as f32 / 16_777_216.0;
-        let (time_s, diameter, id) = (crossing.time_s, crossing.diameter, crossing.id);
-        (chance < open).then_some(Impact { at: Vec2::new(at.x, at.z), time_s, ago_s, diameter, id })
-    };
-    crossings.iter().filter_map(impact).collect()
-}
-
-impl Shores {
-    /// Of a map whose position is relative to `origin`.
-    fn new(map: &PuddleMap, origin: DVec3) -> Self {
-        let mut squares: BTreeMap<[i64; 2], Corners> = BTreeMap::new();
-        let [columns, rows] = map.size;
-        let origin = DVec2::new(origin.x, origin.z);
-        for y in 0..rows {
-            let row = &map.cells[y * columns..(y + 1) * columns];
-            for (k, cells) in row.chunks(CELLS_BOUNDED).enumerate() {
-                let is_wet = |cell: &[f32; 4]| cell[2] >= PUDDLE_WATER_MIN_DEPTH;
-                let (Some(first), Some(last)) =
-                    (cells.iter().position(is_wet), cells.iter().rposition(is_wet))
-                else {
-                    continue;
-                };
-                let part = |at: usize, count: usize| at as f32 / count as f32;
-                let across = [first, last + 1].map(|x| part(k * CELLS_BOUNDED + x, columns));
-                let down = [y, y + 1].map(|y| part(y, rows));
-                let corners =
-                    across.iter().flat_map(|&u| down.iter().map(move |&v| map.ground.position(u, v)));
-                let corners = corners.map(|at| origin + DVec2::new(f64::from(at.x), f64::from(at.z)));
-                let (low, high) = corners.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), at| {
-                    (low.min(at), high.max(at))
-                });
-                // In whole steps: water that rises a little moves nothing.
-                let low = (low / ASIDE_M - 1.0).floor() * ASIDE_M;
-                let high = (high / ASIDE_M + 1.0).ceil() * ASIDE_M;
-                let [from, to] = [(low / BLOCK_M).floor().as_i64vec2(), (high / BLOCK_M).ceil().as_i64vec2()];
-                for square in (from.x..to.x).flat_map(|x| (from.y..to.y).map(move |z| [x, z])) {
-                    let corner = DVec2::new(square[0] as f64, square[1] as f64) * BLOCK_M;
-                    let part = [corner.max(low), (corner + BLOCK_M).min(high)];
-                    let bounds = squares.entry(square).or_insert(part);
-                    *bounds = [bounds[0].min(part[0]), bounds[1].max(part[1])];
-                }
-            }
-        }
-        Self { cells: Arc::clone(&map.cells), squares }
-    }
-}
-
-impl PuddleMap {
-    /// Height of the water's surface over that of the map's middle at a position (m), and the fraction of the rain that arrives there;
-    /// `None` on land. `turn` is the map's.
-    fn surface(&self, turn: Vec2, position: Vec3) -> Option<[f32; 2]> {
-        let water = self.water_at(self.place(turn, position))?;
-        Some([water.level, water.open])
-    }
-}
-
 impl RingRows {
     /// Number of rings.
     #[must_use]
@@ -559,9 +327,12 @@ impl RingRows {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec2;
+
     use super::*;
     use crate::builder::SceneBuilder;
     use crate::data::SceneData;
+    use crate::puddle::map::turned;
     use crate::puddle::{Ground, PuddleRows, Ripples};
     use crate::sky_light::SkyLight;
     use downpour_drop::distribution::DropSizeLaw;

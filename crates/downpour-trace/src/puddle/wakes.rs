@@ -90,13 +90,22 @@ struct Basin {
     is_level: bool,
 }
 
+/// Where the water of a puddle is.
+#[derive(Clone, Debug)]
+struct WaterRegion {
+    /// Cells of the map of which that was found.
+    cells: Arc<[[f32; 4]]>,
+    /// `None` without water.
+    region: Option<Region>,
+}
+
 /// Waves of what moves through the puddles of a scene.
 #[derive(Debug)]
 pub struct Wakes {
     form: PuddleForm,
     basins: BTreeMap<usize, Basin>,
-    /// Where the water of each puddle is, with the cells of the map of which that was found.
-    regions: Vec<(Arc<[[f32; 4]]>, Option<Region>)>,
+    /// Of each puddle.
+    regions: Vec<WaterRegion>,
     /// Number of the last step, counted from time 0.
     step: Option<i64>,
 }
@@ -134,11 +143,11 @@ impl Wakes {
             .iter()
             .enumerate()
             .map(|(k, (map, _))| match before.get(k) {
-                Some(known) if Arc::ptr_eq(&known.0, &map.cells) => known.clone(),
-                _ => (Arc::clone(&map.cells), region(map)),
+                Some(known) if Arc::ptr_eq(&known.cells, &map.cells) => known.clone(),
+                _ => WaterRegion { cells: Arc::clone(&map.cells), region: region(map) },
             })
             .collect();
-        let regions: Vec<Option<Region>> = self.regions.iter().map(|(_, region)| *region).collect();
+        let regions: Vec<Option<Region>> = self.regions.iter().map(|known| known.region).collect();
         let Some(all) = regions.iter().flatten().copied().reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
         else {
             self.step = Some(until);
