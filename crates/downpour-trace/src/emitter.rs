@@ -107,7 +107,8 @@ impl SceneData {
                 return light;
             }
             let part = of_left / sum;
-            if rest < part {
+            // Rounding may bring the rest to 1: a part that gives nothing is never drawn.
+            if rest < part || part >= 1.0 || of_right <= 0.0 {
                 rest /= part;
                 probability *= part;
                 node = left;

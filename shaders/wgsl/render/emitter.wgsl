@@ -63,7 +63,8 @@ fn emitter_draw(position: vec3f, normal: vec3f, numbers: vec3f) -> RenderLight {
             return light;
         }
         let part = of_left / sum;
-        if rest < part {
+        // Rounding may bring the rest to 1: a part that gives nothing is never drawn.
+        if rest < part || part >= 1.0 || of_right <= 0.0 {
             rest = rest / part;
             probability *= part;
             node = left;

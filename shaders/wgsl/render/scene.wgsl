@@ -347,7 +347,7 @@ fn scene_direct(
                 is_asked = true;
                 weight = total / fraction;
             } else if few {
-                is_asked = next < run;
+                is_asked = next < run && fraction > 0.0;
                 if is_asked {
                     let times = floor((run - next) / step) + 1.0;
                     next += times * step;

@@ -360,7 +360,7 @@ impl SceneView<'_> {
             if one {
                 weight = total / fraction;
             } else if few {
-                if next >= run {
+                if next >= run || fraction <= 0.0 {
                     continue;
                 }
                 let times = ((run - next) / step).floor() + 1.0;
