@@ -79,7 +79,7 @@ fn a_lost_device_is_opened_again() {
     let lost_after = |submissions: Option<u64>| {
         Gpu::open_with(&GpuOptions { lose_after_submissions: submissions, ..GpuOptions::default() }).unwrap()
     };
-    for submissions in [1, 3] {
+    for submissions in [1, 2, 4] {
         let mut machine = Machine::new(choice.clone());
         machine.set_device(Device::gpu(lost_after(Some(submissions)), false));
         let drawn = machine.draw(1, request.clone()).unwrap();
