@@ -62,6 +62,7 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
         render::impostor::MODULES,
         render::medium::MODULES,
         render::pane_shadow::MODULES,
+        render::puddle_flow::MODULES,
         render::puddle_rings::MODULES,
         render::puddle_wake::MODULES,
         render::puddle_water::MODULES,

@@ -12,6 +12,7 @@ pub mod layers;
 pub mod medium;
 pub mod pane_shadow;
 pub mod path;
+pub mod puddle_flow;
 pub mod puddle_rings;
 pub mod puddle_wake;
 pub mod puddle_water;

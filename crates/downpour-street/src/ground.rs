@@ -7,6 +7,7 @@ mod covers;
 mod pavement;
 mod road;
 
+use covers::Gully;
 use downpour_math::ops;
 use glam::Vec3;
 
@@ -22,6 +23,8 @@ pub(crate) const LANE_M: f32 = 4.6;
 pub(crate) const LANE_REACH_M: f32 = 9.0;
 /// Width of the gutters of setts.
 const GUTTER_M: f32 = 0.3;
+/// Distance from the curb up to which the gutter is lowest.
+const GUTTER_LOW_M: f32 = 0.05;
 /// Height of the middle of the road over its edges.
 const CROWN_M: f32 = 0.08;
 /// Height of the curbs.
@@ -60,11 +63,13 @@ pub(crate) struct Ground {
     /// Length of the rows of houses.
     pub(crate) length: f32,
     pub(crate) hollows: Vec<Hollow>,
+    /// x and z of the manhole covers.
+    covers: Vec<[f32; 2]>,
+    gullies: Vec<Gully>,
     paving: Paving,
     age: f32,
     repairs: Vec<Repair>,
     seed: u32,
-    random: u64,
 }
 
 impl Ground {
@@ -101,16 +106,18 @@ impl Ground {
                 });
             }
         }
+        let (covers, gullies) = Gully::plan(settings.seed, settings.length_m, half_road);
         Self {
             half_road,
             pavement: settings.pavement_m,
             length: settings.length_m,
             hollows,
+            covers,
+            gullies,
             paving: settings.paving,
             age: settings.age,
             repairs,
             seed: (settings.seed as u32).wrapping_mul(2_654_435_761) >> 8,
-            random: settings.seed,
         }
     }
 
@@ -159,9 +166,11 @@ impl Ground {
         smooth(0.0, 7.0, inside)
     }
 
-    /// Unevenness along a gutter, meters: water stands in its low parts.
+    /// Unevenness along a gutter, meters: water stands in its low parts, and runs to the gullies.
     fn gutter_wave(&self, z: f32, side: u32) -> f32 {
-        (world(z, side as f32 * 31.0, 4.6, 2, 201 + side + self.seed) - 0.5) * 0.03 * (0.6 + 0.8 * self.age)
+        let wave = world(z, side as f32 * 31.0, 4.6, 2, 201 + side + self.seed) - 0.5;
+        let dips: f32 = self.gullies.iter().map(|gully| gully.dip(z, side)).sum();
+        wave * 0.03 * (0.6 + 0.8 * self.age) - dips
     }
 
     /// Height of the edge of the carriageway, at the gutter.

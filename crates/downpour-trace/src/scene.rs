@@ -5,6 +5,11 @@
 
 mod lamps;
 #[cfg(not(feature = "parity"))]
+pub(crate) mod puddle_flow;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
+pub mod puddle_flow;
+#[cfg(not(feature = "parity"))]
 pub(crate) mod puddle_rings;
 #[cfg(feature = "parity")]
 #[doc(hidden)]

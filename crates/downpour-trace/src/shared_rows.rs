@@ -1,10 +1,11 @@
-//! Rows behind those of a scene's table that its copies share: maps of puddles, and the slopes of rings on them.
+//! Rows behind those of a scene's table that its copies share: maps of puddles, how their water runs, and the slopes of rings on them.
 //!
 //! They are large and change seldom, where the table is copied for each frame. A row has one number in both: that of the first shared row
 //! is the number of rows of the table.
 
 use std::sync::Arc;
 
+use downpour_shaders::render::puddle_flow::PUDDLE_FLOW_ROW;
 use downpour_shaders::render::puddle_water::PUDDLE_WATER_ROWS;
 
 use crate::data::SceneData;
@@ -19,9 +20,11 @@ const SLOPES_ROW: u32 = 2;
 #[derive(Clone, Debug)]
 pub enum SharedRows {
     /// Slopes of rings.
-    Words(Arc<[[u32; 4]]>),
-    /// A map of a puddle.
-    Numbers(Arc<[[f32; 4]]>),
+    Slopes(Arc<[[u32; 4]]>),
+    /// The map of a puddle.
+    Map(u32, Arc<[[f32; 4]]>),
+    /// How the water of a puddle runs.
+    Flow(u32, Arc<[[u32; 4]]>),
 }
 
 impl SharedRows {
@@ -29,8 +32,8 @@ impl SharedRows {
     #[must_use]
     pub fn rows(&self) -> &[[u32; 4]] {
         match self {
-            Self::Words(rows) => rows,
-            Self::Numbers(rows) => bytemuck::cast_slice(rows),
+            Self::Slopes(rows) | Self::Flow(_, rows) => rows,
+            Self::Map(_, rows) => bytemuck::cast_slice(rows),
         }
     }
 
@@ -78,14 +81,15 @@ impl SceneData {
 
     /// Tells the puddles of the table where their shared rows are: after each change of the table's length.
     pub(crate) fn place_shared(&mut self) {
-        let places: Vec<u32> = self.shared_places().into_iter().map(|(first, _)| first).collect();
-        let (slopes, maps) = places.split_at(places.len().saturating_sub(self.puddle_count as usize));
-        if let Some(&first) = slopes.first() {
-            let row = (self.ripples_row() + SLOPES_ROW) as usize;
-            self.table[row][0] = first;
-        }
-        for (k, &first) in (0..).zip(maps) {
-            self.table[(self.puddles + k * PUDDLE_WATER_ROWS + MAP_ROW) as usize][2] = first;
+        let of_puddle = |k: u32, row: u32| self.puddles + k * PUDDLE_WATER_ROWS + row;
+        let place = |(first, rows): (u32, &SharedRows)| match rows {
+            SharedRows::Slopes(_) => (self.ripples_row() + SLOPES_ROW, 0, first),
+            SharedRows::Map(k, _) => (of_puddle(*k, MAP_ROW), 2, first),
+            SharedRows::Flow(k, _) => (of_puddle(*k, PUDDLE_FLOW_ROW), 0, first),
+        };
+        let places: Vec<(u32, usize, u32)> = self.shared_places().into_iter().map(place).collect();
+        for (row, number, first) in places {
+            self.table[row as usize][number] = first;
         }
     }
 }

@@ -19,6 +19,9 @@ const SEED: u64 = 0x7075_6464_6c65_0001;
 /// Depth of rain by which the water of a picture may be behind, m: maps are not made anew for each picture.
 const STEP_M: f64 = 2.0e-5;
 
+/// Step of the runoff of water that runs, m/s: 0.1 mm/h.
+const RUNOFF_STEP: f64 = 1.0e-4 / 3600.0;
+
 /// A puddle that the rain fills, or keys do.
 #[derive(Debug)]
 struct Filled {
@@ -26,11 +29,40 @@ struct Filled {
     index: usize,
     ground: PuddleGround,
     limits: FillLimits,
-    /// Depth of water that seeps away, m/s; `None` for a puddle that keys fill.
-    seepage: Option<f64>,
-    /// Present filling, and the levels of the hollows.
-    filling: Filling,
+    /// What fills it.
+    fill: PuddleFill,
+    /// The present state.
+    state: WaterState,
+    /// Present levels of the hollows.
     levels: Vec<Option<f32>>,
+}
+
+/// What the water of a puddle is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct WaterState {
+    /// Water in its hollows.
+    filling: Filling,
+    /// Runoff of the water that runs, m/s.
+    runoff: f32,
+}
+
+impl WaterState {
+    /// That of a puddle at a time.
+    fn at(weather: &Weather, index: usize, fill: PuddleFill, time_s: f64) -> Self {
+        match fill {
+            PuddleFill::Part(_) => Self { filling: given(weather, index, time_s), runoff: 0.0 },
+            PuddleFill::Rain { seepage, running } => {
+                let runoff = if running { weather.runoff_rate(seepage, time_s) } else { 0.0 };
+                let runoff = ((runoff / RUNOFF_STEP).round() * RUNOFF_STEP) as f32;
+                Self { filling: filling(weather, seepage, time_s), runoff }
+            }
+        }
+    }
+
+    /// The map of this water on its ground, with hollows filled to some levels.
+    fn map(&self, ground: &PuddleGround, levels: &[Option<f32>], limits: &FillLimits) -> PuddleMap {
+        ground.with_levels(levels, ground.running(levels, self.runoff, limits).as_ref())
+    }
 }
 
 /// Puddles of a weather on the ground of its scene.
@@ -41,6 +73,8 @@ pub struct WetGround {
     filled: Vec<Filled>,
     /// Origin of the maps' positions.
     origin: DVec3,
+    /// Present time, s.
+    time_s: f64,
     ripples: Ripples,
     /// Sizes of the drops at the largest rate; `None` without rain.
     law: Option<DropSizeDistribution>,
@@ -90,14 +124,11 @@ impl WetGround {
                     let relief = Relief { rms_m: relief as f32, seed };
                     let ground = PuddleGround::new(&standing, &ground, cells.map(|n| n as usize), &relief);
                     let limits = FillLimits { deepest: puddle.depth as f32, least: min_depth as f32 };
-                    let (filling, seepage) = match fill {
-                        PuddleFill::Part(_) => (given(weather, index, first_s), None),
-                        PuddleFill::Rain { seepage } => (filling(weather, seepage, first_s), Some(seepage)),
-                    };
-                    let levels = ground.levels(&filling, &limits);
-                    let map = ground.with_levels(&levels);
-                    if seepage.is_some() || weather.keys.has_fill(index) {
-                        filled.push(Filled { index, ground, limits, seepage, filling, levels });
+                    let state = WaterState::at(weather, index, fill, first_s);
+                    let levels = ground.levels(&state.filling, &limits);
+                    let map = state.map(&ground, &levels, &limits);
+                    if matches!(fill, PuddleFill::Rain { .. }) || weather.keys.has_fill(index) {
+                        filled.push(Filled { index, ground, limits, fill, state, levels });
                     }
                     map
                 }
@@ -112,7 +143,8 @@ impl WetGround {
         }
         let wakes = loaded.is_animated().then(|| (Wakes::new(form), loaded.moving_nodes()));
         let (weather, origin) = (weather.clone(), frame_scene.origin);
-        Ok(Some(Self { weather, puddles, filled, origin, ripples, law, rings: None, shown: None, wakes }))
+        let (rings, shown, time_s) = (None, None, first_s);
+        Ok(Some(Self { weather, puddles, filled, origin, time_s, ripples, law, rings, shown, wakes }))
     }
 
     /// Steps the rain, and what moves through the water, to a time in seconds; times must not decrease. `loaded` has the scene of
@@ -127,21 +159,19 @@ impl WetGround {
             }
         }
         for puddle in &mut self.filled {
-            let now = match puddle.seepage {
-                Some(seepage) => filling(&self.weather, seepage, time_s),
-                None => given(&self.weather, puddle.index, time_s),
-            };
-            if now == puddle.filling {
+            let now = WaterState::at(&self.weather, puddle.index, puddle.fill, time_s);
+            if now == puddle.state {
                 continue;
             }
-            puddle.filling = now;
-            let levels = puddle.ground.levels(&now, &puddle.limits);
+            let levels = puddle.ground.levels(&now.filling, &puddle.limits);
             // Full hollows stay as they are.
-            if levels != puddle.levels {
-                self.puddles[puddle.index].0 = puddle.ground.with_levels(&levels);
+            if levels != puddle.levels || now.runoff != puddle.state.runoff {
+                self.puddles[puddle.index].0 = now.map(&puddle.ground, &levels, &puddle.limits);
                 puddle.levels = levels;
             }
+            puddle.state = now;
         }
+        self.time_s = time_s;
         if let Some((wakes, moves)) = &mut self.wakes {
             let (weather, origin) = (&self.weather, self.origin);
             let moving = |time_s: f64, region: &Region| {
@@ -209,6 +239,7 @@ impl WetGround {
             shift: (self.origin - frame_scene.origin).as_vec3(),
             rings: self.shown.as_ref(),
             wakes: &self.wakes.as_ref().map_or_else(Vec::new, |(wakes, _)| wakes.rows(&self.puddles)),
+            time_s: self.time_s,
         });
         #[cfg(feature = "wgpu")]
         {

@@ -216,6 +216,7 @@ fn puddle(look: MaterialLook, depth: f32, sky: f32, lamp: LightSource) -> SceneD
         shift: Vec3::ZERO,
         rings: None,
         wakes: &[],
+        time_s: 0.0,
     });
     scene
 }
@@ -321,6 +322,7 @@ fn noise_of_water_has_no_pattern_and_changes_with_time() -> Outcome {
         shift: Vec3::ZERO,
         rings: None,
         wakes: &[],
+        time_s: 0.0,
     });
     let (width, height) = (72usize, 56usize);
     let of_time = |k: u32| -> Result<Vec<f64>, Box<dyn std::error::Error>> {

@@ -63,6 +63,7 @@ fn flood(scene: &mut SceneData, depth: f32, look: PuddleLook) {
         shift: Vec3::ZERO,
         rings: None,
         wakes: &[],
+        time_s: 0.0,
     });
 }
 
@@ -159,6 +160,7 @@ fn rays_end_on_the_surface_of_the_water_in_a_hollow() -> Outcome {
         shift: Vec3::ZERO,
         rings: None,
         wakes: &[],
+        time_s: 0.0,
     });
     let eye = Vec3::new(0.3, 1.0, 1.5);
     let view = Viewpoint { eye, forward: -eye, up: Vec3::Y, fov_y: 0.2 };
@@ -200,6 +202,7 @@ fn water_is_laid_anew() {
         shift: Vec3::ZERO,
         rings: None,
         wakes: &[],
+        time_s: 0.0,
     });
     assert_eq!((scene.table.len(), scene.puddle_count), (dry, 0));
 }

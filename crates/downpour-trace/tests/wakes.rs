@@ -21,7 +21,7 @@ fn pool(turn: f32, shore: f32) -> Vec<(PuddleMap, PuddleLook)> {
         [0.0, 0.0, if x < shore { DEPTH_M } else { -0.01 }, 1.0]
     };
     vec![(
-        PuddleMap { ground, size, cells: (0..size[0] * size[1]).map(cell).collect() },
+        PuddleMap { ground, size, cells: (0..size[0] * size[1]).map(cell).collect(), flow: None },
         PuddleLook::default(),
     )]
 }

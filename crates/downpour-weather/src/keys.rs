@@ -218,6 +218,13 @@ impl Weather {
         self.wetness.runoff(&self.rates_mm_h(), seepage_m_s, time_s)
     }
 
+    /// Depth of water that runs off level ground at a time in s, m/s, less what seeps away (m/s): the mean of five minutes, which is about
+    /// how long water is on its way. 0 where no law says.
+    #[must_use]
+    pub fn runoff_rate(&self, seepage_m_s: f64, time_s: f64) -> f64 {
+        self.wetness.runoff_rate(&self.rates_mm_h(), seepage_m_s, time_s)
+    }
+
     /// Factor of the exposure of a picture at a time in seconds, over that of the automatic exposure with
     /// `camera.exposure_ev`: 1 without keys.
     #[must_use]

@@ -33,6 +33,8 @@ pub enum PuddleFill {
     Rain {
         /// Depth of water that seeps away, m/s.
         seepage: f64,
+        /// True if the water that runs off and spills is shown on its way.
+        running: bool,
     },
 }
 
@@ -110,6 +112,7 @@ pub(super) struct PuddleTable {
     depth_mm: Option<In<PuddleDepthMm>>,
     fill: Option<FillKey>,
     seepage_mm_h: Option<In<SeepageMmH>>,
+    running: Option<bool>,
     min_depth_mm: Option<In<PuddleDepthMm>>,
     relief_mm: Option<In<ReliefMm>>,
     seed: Option<u64>,
@@ -138,6 +141,7 @@ impl Puddle {
             for (name, given) in [
                 ("fill", table.fill.is_some()),
                 ("seepage_mm_h", table.seepage_mm_h.is_some()),
+                ("running", table.running.is_some()),
                 ("min_depth_mm", table.min_depth_mm.is_some()),
                 ("relief_mm", table.relief_mm.is_some()),
                 ("seed", table.seed.is_some()),
@@ -193,15 +197,18 @@ fn fill(
     at: &impl Fn(&str) -> String,
     positions: &Positions<'_>,
 ) -> Result<PuddleFill, SceneError> {
-    let rain =
-        || PuddleFill::Rain { seepage: table.seepage_mm_h.map_or(0.0, |rate| rate.0 * 1.0e-3 / 3600.0) };
-    match keys {
-        Some(_) if table.seepage_mm_h.is_some() => {
-            Err(positions.bad(&at("seepage_mm_h"), "beside a fill that is given", "fill = \"rain\""))
+    let Some(part) = keys else {
+        let seepage = table.seepage_mm_h.map_or(0.0, |rate| rate.0 * 1.0e-3 / 3600.0);
+        return Ok(PuddleFill::Rain { seepage, running: table.running.unwrap_or(true) });
+    };
+    for (name, given) in
+        [("seepage_mm_h", table.seepage_mm_h.is_some()), ("running", table.running.is_some())]
+    {
+        if given {
+            return Err(positions.bad(&at(name), "beside a fill that is given", "fill = \"rain\""));
         }
-        Some(part) => Ok(PuddleFill::Part(part.at(0.0))),
-        None => Ok(rain()),
     }
+    Ok(PuddleFill::Part(part.at(0.0)))
 }
 
 /// A fraction, or keys of it, or `None` for the rain.

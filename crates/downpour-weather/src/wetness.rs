@@ -11,6 +11,10 @@ use serde::Deserialize;
 /// Default time for which the rain has fallen before time 0, s.
 pub const RAINED_S: f64 = 600.0;
 
+/// Time over which the rain is meant whose water runs past a place, s: the shortest time of concentration of the rational method (U.S.
+/// Federal Highway Administration, Hydraulic Engineering Circular 22, 2009, section 3.2.2.3).
+const CONCENTRATION_S: f64 = 300.0;
+
 /// Default edge coefficient of reflections as billboards.
 const REFLECTION_EDGE: f64 = 0.5;
 
@@ -145,30 +149,45 @@ impl Wetness {
         Some([before, lost, left(&last, empty)])
     }
 
+    /// [`Weather::runoff_rate`](super::Weather::runoff_rate) of rates in mm/h.
+    pub(super) fn runoff_rate(&self, rates: &Keyed<f64>, seepage_m_s: f64, time_s: f64) -> f64 {
+        // Without a law of what has fallen nothing runs.
+        let Some([before, lost, since]) = self.runoff(rates, seepage_m_s, time_s) else { return 0.0 };
+        let until = time_s.max(0.0);
+        let from = until - CONCENTRATION_S;
+        let fell: f64 = spans(rates, from.max(0.0), until).map(|span| span.depth_m).sum();
+        // The rain before time 0 fell at the rate of time 0.
+        let rate = meters(rates.at(0.0), 1.0);
+        let ended = -self.dried_s;
+        let began = if rate > 0.0 { ended - self.before_m(rates) / rate } else { ended };
+        let fell_before = rate * (ended - began.max(from)).max(0.0);
+        // What the ground stores first does not run.
+        let ran = (fell + fell_before - seepage_m_s * CONCENTRATION_S).min((before - lost).max(0.0) + since);
+        ran.max(0.0) / CONCENTRATION_S
+    }
+
+    /// Depth of the rain before time 0, m.
+    fn before_m(&self, rates: &Keyed<f64>) -> f64 {
+        self.rained_m.unwrap_or_else(|| meters(rates.at(0.0), RAINED_S))
+    }
+
     /// The rains until a time in s, each with the time without rain after it: that before time 0 first. Apart from them the rain that has
     /// not ended.
     fn spells(&self, rates: &Keyed<f64>, time_s: f64) -> (Vec<Spell>, Spell) {
-        let meters = |mm_h: f64, seconds: f64| mm_h * 1.0e-3 / 3600.0 * seconds;
-        let rain_m = self.rained_m.unwrap_or_else(|| meters(rates.at(0.0), RAINED_S));
-        let mut spells = vec![Spell { rain_m, rained_s: 0.0, dry_s: self.dried_s }];
+        let mut spells = vec![Spell { rain_m: self.before_m(rates), rained_s: 0.0, dry_s: self.dried_s }];
         let mut last = Spell::default();
-        let mut from = 0.0;
-        let until = time_s.max(0.0);
-        let inner = rates.keys().iter().map(|&(time, _)| time).filter(|&time| time > 0.0 && time < until);
-        for to in inner.chain([until]).filter(|&to| to > 0.0) {
-            let mean = 0.5 * (rates.at(from) + rates.at(to));
-            if mean > 0.0 {
-                last.rain_m += meters(mean, to - from);
-                last.rained_s += to - from;
+        for Span { depth_m, seconds } in spans(rates, 0.0, time_s.max(0.0)) {
+            if depth_m > 0.0 {
+                last.rain_m += depth_m;
+                last.rained_s += seconds;
             } else {
                 if last.rained_s > 0.0 {
                     spells.push(std::mem::take(&mut last));
                 }
                 if let Some(spell) = spells.last_mut() {
-                    spell.dry_s += to - from;
+                    spell.dry_s += seconds;
                 }
             }
-            from = to;
         }
         (spells, last)
     }
@@ -226,6 +245,31 @@ impl Wetness {
             reflections,
         })
     }
+}
+
+/// Rain between two keys, or between a key and an end.
+#[derive(Clone, Copy, Debug)]
+struct Span {
+    depth_m: f64,
+    seconds: f64,
+}
+
+/// Depth, m, of a rate in mm/h over some time.
+fn meters(mm_h: f64, seconds: f64) -> f64 {
+    mm_h * 1.0e-3 / 3600.0 * seconds
+}
+
+/// The rain of some rates in mm/h from a time until another, s.
+fn spans(rates: &Keyed<f64>, from_s: f64, until_s: f64) -> impl Iterator<Item = Span> {
+    let inner =
+        rates.keys().iter().map(|&(time, _)| time).filter(move |&time| time > from_s && time < until_s);
+    let mut from = from_s;
+    inner.chain([until_s]).filter(move |&to| to > from_s).map(move |to| {
+        let mean = 0.5 * (rates.at(from) + rates.at(to));
+        let seconds = to - from;
+        from = to;
+        Span { depth_m: meters(mean, seconds), seconds }
+    })
 }
 
 /// The form that a table asks for.

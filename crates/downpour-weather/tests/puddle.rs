@@ -59,11 +59,12 @@ fn rain_fills_by_default() {
         let PuddleShape::Found { fill, .. } = weather.puddles[0].shape else { panic!("{text}") };
         fill
     };
-    assert_eq!(with(""), PuddleFill::Rain { seepage: 0.0 });
-    let PuddleFill::Rain { seepage } = with("fill = \"rain\"\nseepage_mm_h = 3.6") else {
+    assert_eq!(with(""), PuddleFill::Rain { seepage: 0.0, running: true });
+    let PuddleFill::Rain { seepage, running } = with("fill = \"rain\"\nseepage_mm_h = 3.6\nrunning = false")
+    else {
         panic!("not by rain")
     };
-    assert!((seepage - 1.0e-6).abs() < 1.0e-15);
+    assert!((seepage - 1.0e-6).abs() < 1.0e-15 && !running);
     assert_eq!((with("fill = 0"), with("fill = 1")), (PuddleFill::Part(0.0), PuddleFill::Part(1.0)));
 }
 
@@ -91,6 +92,39 @@ fn what_runs_off_is_what_the_ground_does_not_store() {
     assert_eq!(fixed.runoff(0.0, 0.0), None);
 }
 
+/// The runoff of a place is the mean of the last five minutes: that of the rain, less what the ground stores and what seeps away.
+#[test]
+fn runoff_is_the_rain_of_five_minutes() {
+    let rate = |text: &str, seepage_mm_h: f64, time_s: f64| {
+        let weather = Weather::parse("w.toml", text).unwrap();
+        weather.runoff_rate(seepage_mm_h * 1.0e-3 / 3600.0, time_s) * 3.6e6
+    };
+    let is = |found: f64, wanted: f64| assert!((found - wanted).abs() < 1.0e-3, "{found} {wanted} mm/h");
+    // Ten minutes of it have fallen before time 0.
+    let steady = "[rain]\nrate_mm_h = 36";
+    for time in [0.0, 10.0, 4000.0] {
+        is(rate(steady, 0.0, time), 36.0);
+        is(rate(steady, 6.0, time), 30.0);
+        is(rate(steady, 50.0, time), 0.0);
+    }
+    // It begins at time 0, and the ground stores the first 0.5 mm.
+    let begins = "[rain]\nrate_mm_h = 36\n[wetness]\nrained_mm = 0\nstorage_mm = 0.5";
+    is(rate(begins, 0.0, 40.0), 0.0);
+    is(rate(begins, 0.0, 150.0), (1.5 - 0.5) * 12.0);
+    is(rate(begins, 0.0, 200.0), (2.0 - 0.5) * 12.0);
+    is(rate(begins, 0.0, 1000.0), 36.0);
+    // It ends at 600 s, and five minutes later nothing runs.
+    let ends = "[rain]\nrate_mm_h = [[0, 36], [600, 36], [600.001, 0]]";
+    is(rate(ends, 0.0, 600.0), 36.0);
+    is(rate(ends, 0.0, 700.0), 24.0);
+    is(rate(ends, 0.0, 901.0), 0.0);
+    // It has ended a hundred seconds before time 0, and one began then that rises to 36 mm/h in 200 s.
+    let again = "[rain]\nrate_mm_h = [[0, 18], [100, 36]]\n[wetness]\ndried_s = 100";
+    is(rate(again, 0.0, 0.0), 18.0 * 200.0 / 300.0);
+    is(rate(again, 0.0, 100.0), (18.0 * 100.0 + 27.0 * 100.0) / 300.0);
+    assert_eq!(rate("[rain]\nrate_mm_h = 36\n[wetness]\nwetness = 0.5", 0.0, 9.0), 0.0);
+}
+
 #[test]
 fn what_cannot_be_is_refused() {
     let with = |line: &str| format!("[[puddle]]\nposition_m = [0, 0, 0]\nsize_m = [4, 2]\n{line}\n");
@@ -99,6 +133,16 @@ fn what_cannot_be_is_refused() {
         &with("fill = 0.5\nseepage_mm_h = 2"),
         2,
         "line 5, column 1: puddle[0].seepage_mm_h: beside a fill that is given; allowed: fill = \"rain\"",
+    );
+    says(
+        &with("fill = [[0, 0], [1, 1]]\nrunning = true"),
+        2,
+        "line 5, column 1: puddle[0].running: beside a fill that is given; allowed: fill = \"rain\"",
+    );
+    says(
+        &with("mask = \"m.png\"\nrunning = true"),
+        2,
+        "line 5, column 1: puddle[0].running: beside mask; allowed: either a mask, or a puddle that is found",
     );
     says(
         &with("mask = \"m.png\"\nrelief_mm = 2"),

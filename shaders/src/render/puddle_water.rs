@@ -1,5 +1,6 @@
 //! `wgsl/render/puddle_water.wgsl`: puddles as rays meet them. Twin: `downpour_trace::scene::water`.
 
+use super::puddle_flow::PUDDLE_FLOW;
 use super::puddle_rings::PUDDLE_RINGS;
 use super::scene::DATA;
 use super::table::PUDDLE;
@@ -13,7 +14,7 @@ shared_constants! {
     /// Numbers of puddles in pictures.
     PUDDLE_WATER_CONSTANTS at "render/puddle_water constants" {
         /// Rows of a puddle in the scene's table.
-        PUDDLE_WATER_ROWS: u32 = 7;
+        PUDDLE_WATER_ROWS: u32 = 8;
         /// Most puddles of a scene.
         PUDDLE_WATER_MAX_COUNT: u32 = 16;
         /// Says that there is no water.
@@ -54,5 +55,5 @@ shared_constants! {
 pub static PUDDLE_WATER: Module = Module {
     path: "render/puddle_water.wgsl",
     wgsl: include_str!("../../wgsl/render/puddle_water.wgsl"),
-    uses: &[&PUDDLE_WATER_CONSTANTS, &DATA, &PUDDLE, &PUDDLE_RINGS, &RNG],
+    uses: &[&PUDDLE_WATER_CONSTANTS, &DATA, &PUDDLE, &PUDDLE_FLOW, &PUDDLE_RINGS, &RNG],
 };

@@ -1,6 +1,6 @@
 // Puddles. Rows of a puddle in the table: middle of the map; its axes and half edges; columns, rows and first texel of it;
-// ripples; color and extinction of the water; more of the ripples; the lattice of wakes (puddle_wake.wgsl). After the puddles, one row of the ripples' lattice, those of the rings
-// of single drops, and texels.
+// ripples; color and extinction of the water; more of the ripples; the lattice of wakes (puddle_wake.wgsl); how the water runs
+// (puddle_flow.wgsl). After the puddles, one row of the ripples' lattice, those of the rings of single drops, and texels.
 // Twin: downpour_trace::puddle::rows.
 
 // Water on the ground.

@@ -88,32 +88,13 @@ fn puddle_water_piece(vertex: vec2i, offset: vec2f, first: u32, size: u32, steps
     return vec3f(mixed.xy, max(mixed.z - dot(mixed.xy, mixed.xy), 0.0));
 }
 
-// Slopes along x and z of the water's surface, and the variance of the slope within a footprint (m). One lattice serves
+// The ripples at a place in steps of the mesh: slopes, and the variance that the level does not show. One lattice serves
 // all water: pieces of it, from a different position for each vertex of a triangle mesh, are mixed so that the variance
-// stays. Near the eye the rings of single drops take their part of it.
-fn puddle_water_ripple(puddle: u32, position: vec3f, footprint: f32, depth: f32, open: f32) -> vec3f {
-    let water = puddle_load(puddle);
-    let look = water.ripples;
-    let more = water.own;
-    let head = puddle_ripples();
-    let cell = head.cell;
-    // look: scale, cosine and sine of the angle, influence.
-    let strength = look.w * open * smoothstep(0.0, max(more.x, 1.0e-6), depth);
-    if head.size == 0u || strength <= 0.0 {
-        return vec3f(0.0);
-    }
-    let finest = footprint / (look.x * cell);
-    let level = min(u32(max(floor(log2(max(finest, 1.0)) + 0.5), 0.0)), head.levels - 1u);
-    // Levels of n x n, n / 2 x n / 2, ...: 4/3 n^2 (1 - 4^-level) texels before this one.
-    let size = max(head.size >> level, 1u);
-    let first = head.first + (head.size * head.size - size * size) / 3u * 4u;
-    let steps = PUDDLE_WATER_MESH / cell * f32(size) / f32(head.size);
-
-    let px = (position.x * look.y + position.z * look.z) / (look.x * PUDDLE_WATER_MESH) + more.y;
-    let pz = (position.z * look.y - position.x * look.z) / (look.x * PUDDLE_WATER_MESH) + more.z;
+// stays. The level has a first row, a size and texels per step.
+fn puddle_water_mixed(place: vec2f, first: u32, size: u32, steps: f32) -> vec3f {
     // Skewed, so that triangles become halves of squares.
-    let sx = px - pz * 0.57735027;
-    let sz = pz * 1.1547005;
+    let sx = place.x - place.y * 0.57735027;
+    let sz = place.y * 1.1547005;
     let corner = vec2i(i32(floor(sx)), i32(floor(sz)));
     let fx = sx - floor(sx);
     let fz = sz - floor(sz);
@@ -133,11 +114,61 @@ fn puddle_water_ripple(puddle: u32, position: vec3f, footprint: f32, depth: f32,
         }
         let vertex = corner + step;
         let middle = vec2f(f32(vertex.x) + 0.5 * f32(vertex.y), 0.8660254 * f32(vertex.y));
-        let piece = puddle_water_piece(vertex, vec2f(px, pz) - middle, first, size, steps);
+        let piece = puddle_water_piece(vertex, place - middle, first, size, steps);
         let weight = weights[k];
         sum += piece.xy * weight;
         spread += piece.z * weight * weight;
         square += weight * weight;
+    }
+    return vec3f(sum / sqrt(square), spread / square);
+}
+
+// Slopes along x and z of the water's surface, and the variance of the slope within a footprint (m). Ripples move with water that runs.
+// Near the eye the rings of single drops take their part of it.
+fn puddle_water_ripple(puddle: u32, position: vec3f, footprint: f32, depth: f32, open: f32) -> vec3f {
+    let water = puddle_load(puddle);
+    let look = water.ripples;
+    let more = water.own;
+    let head = puddle_ripples();
+    let cell = head.cell;
+    let flow = puddle_flow_load(puddle);
+    // Velocity, and slopes of the surface.
+    var runs = vec4f(0.0);
+    if flow.first > 0u {
+        runs = puddle_flow_at(flow.first, water, position);
+    }
+    // look: scale, cosine and sine of the angle, influence.
+    let strength = look.w * open * smoothstep(0.0, max(more.x, 1.0e-6), depth);
+    if head.size == 0u || strength <= 0.0 {
+        return vec3f(runs.zw, 0.0);
+    }
+    let finest = footprint / (look.x * cell);
+    let level = min(u32(max(floor(log2(max(finest, 1.0)) + 0.5), 0.0)), head.levels - 1u);
+    // Levels of n x n, n / 2 x n / 2, ...: 4/3 n^2 (1 - 4^-level) texels before this one.
+    let size = max(head.size >> level, 1u);
+    let first = head.first + (head.size * head.size - size * size) / 3u * 4u;
+    let steps = PUDDLE_WATER_MESH / cell * f32(size) / f32(head.size);
+
+    let px = (position.x * look.y + position.z * look.z) / (look.x * PUDDLE_WATER_MESH) + more.y;
+    let pz = (position.z * look.y - position.x * look.z) / (look.x * PUDDLE_WATER_MESH) + more.z;
+    let moves = puddle_flow_moves(sqrt(dot(runs.xy, runs.xy)));
+    var mixed = vec3f(0.0);
+    var square = 0.0;
+    if moves < 1.0 {
+        let weight = 1.0 - moves;
+        mixed = puddle_water_mixed(vec2f(px, pz), first, size, steps) * vec3f(weight, weight, weight * weight);
+        square = weight * weight;
+    }
+    if moves > 0.0 {
+        let along = vec2f(runs.x * look.y + runs.y * look.z, runs.y * look.y - runs.x * look.z)
+            / (look.x * PUDDLE_WATER_MESH);
+        for (var second = 0u; second < 2u; second += 1u) {
+            let part = puddle_flow_phase(flow.phase, second);
+            let weight = moves * part.y;
+            let place = vec2f(px, pz) - along * part.x + puddle_flow_place(flow.phase, flow.cycle, second);
+            mixed += puddle_water_mixed(place, first, size, steps) * vec3f(weight, weight, weight * weight);
+            square += weight * weight;
+        }
     }
     var lattice = 1.0;
     var rings = vec2f(0.0);
@@ -150,12 +181,12 @@ fn puddle_water_ripple(puddle: u32, position: vec3f, footprint: f32, depth: f32,
             lattice = sqrt(1.0 - shown * shown * drops.part);
         }
     }
-    let slope = sum * (strength * lattice / sqrt(square));
+    let slope = mixed.xy * (strength * lattice / sqrt(square));
     // Back to the world's axes.
     return vec3f(
-        slope.x * look.y - slope.y * look.z + rings.x,
-        slope.y * look.y + slope.x * look.z + rings.y,
-        spread / square * (strength * strength * lattice * lattice),
+        slope.x * look.y - slope.y * look.z + rings.x + runs.z,
+        slope.y * look.y + slope.x * look.z + rings.y + runs.w,
+        mixed.z / square * (strength * strength * lattice * lattice),
     );
 }
 

@@ -3,8 +3,10 @@
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_gpu::{Gpu, GpuError};
 use downpour_math::ops;
+use downpour_math::packing::packing_pack_half;
 use downpour_math::rng::{rng_pcg4d, rng_unit};
 use downpour_render::light::LightSource;
+use downpour_shaders::render::puddle_flow::PUDDLE_FLOW;
 use downpour_shaders::render::puddle_rings::PUDDLE_RINGS;
 use downpour_shaders::render::puddle_wake::PUDDLE_WAKE;
 use downpour_shaders::render::puddle_water::PUDDLE_WATER;
@@ -14,8 +16,9 @@ use downpour_trace::builder::{MeshPart, SceneBuilder};
 use downpour_trace::data::SceneData;
 use downpour_trace::material::MaterialLook;
 use downpour_trace::puddle::{
-    Ground, PuddleLook, PuddleMap, PuddleRows, RainOnWater, RingRows, Rings, WakeRows, slope_levels,
+    FlowMap, Ground, PuddleLook, PuddleMap, PuddleRows, RainOnWater, RingRows, Rings, WakeRows, slope_levels,
 };
+use downpour_trace::scene::puddle_flow::{puddle_flow_moves, puddle_flow_phase, puddle_flow_place};
 use downpour_trace::scene::puddle_rings::puddle_rings_shown;
 use downpour_trace::scene::puddle_wake::puddle_wake_shown;
 use downpour_trace::scene::water::{
@@ -26,7 +29,7 @@ use downpour_trace::sky_light::SkyLight;
 use glam::{Affine3A, DVec3, Vec2, Vec3};
 
 use super::scene::{Parts, picture, scene};
-use crate::Domain::{Uniform, Unit3};
+use crate::Domain::{Below, Uniform, Unit3};
 use crate::function::Run;
 use crate::words::{Args, IntoWords as _};
 use crate::{FunctionCase, KernelCase, Tol};
@@ -67,6 +70,27 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &[Uniform(0.0, 8.0)],
             Tol::absolute(1.0e-5, "a quotient (2.5 ulp), times the slope of a cubic"),
             |a| puddle_wake_shown(a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "puddle_flow_moves",
+            &PUDDLE_FLOW,
+            &[Uniform(0.0, 0.06)],
+            Tol::absolute(1.0e-5, "a quotient (2.5 ulp), times the slope of a cubic"),
+            |a| puddle_flow_moves(a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "puddle_flow_phase",
+            &PUDDLE_FLOW,
+            &[fraction, Below(2)],
+            Tol::absolute(1.0e-6, "sums of numbers below 2, and a product"),
+            |a| puddle_flow_phase(a.f32(), a.u32()).to_array().words(),
+        ),
+        FunctionCase::new(
+            "puddle_flow_place",
+            &PUDDLE_FLOW,
+            &[fraction, Below(1 << 20), Below(2)],
+            Tol::relative(1.0e-6, 1.0e-6, "a product"),
+            |a| puddle_flow_place(a.f32(), a.u32(), a.u32()).to_array().words(),
         ),
         FunctionCase::new("puddle_water_mirrored", &PUDDLE_WATER, &[Unit3, Unit3], DIRECTION, |a| {
             puddle_water_mirrored(vec3(a), vec3(a)).to_array().words()
@@ -114,11 +138,11 @@ fn maps() -> [(PuddleMap, PuddleLook); 2] {
         let depth = 0.06 * ops::sin(0.4 * x) * ops::cos(0.35 * y);
         [-0.02, depth.max(0.0) + 0.01, depth, rng_unit(rng_pcg4d([i as u32, 0, 0, 9])[0])]
     };
-    let sunk = PuddleMap { ground, size, cells: (0..size[0] * size[1]).map(cell).collect() };
+    let sunk = PuddleMap { ground, size, cells: (0..size[0] * size[1]).map(cell).collect(), flow: None };
     let flat = PuddleMap {
         ground: Ground { middle: Vec3::new(1.6, -0.497, 0.4), turn: -0.2, ..ground },
         cells: sunk.cells.iter().map(|&[_, _, depth, open]| [0.0, 0.0, depth + 0.01, open]).collect(),
-        ..sunk
+        ..sunk.clone()
     };
     let look = PuddleLook { influence: 1.4, angle: 0.7, scale: 0.8, ..PuddleLook::default() };
     [(sunk, PuddleLook::default()), (flat, look)]
@@ -144,7 +168,7 @@ fn bank() -> (SceneData, PuddleMap) {
     let cells = (0..size[0] * size[1]).map(|i| [steep * along(i), 0.0, 0.02, 1.0]).collect();
     let ground = Ground { middle: Vec3::ZERO, size: Vec2::splat(2.0 * half), turn: 0.0, reach: 2.0 };
     let sky = SkyLight::new(2, 1, &[[0.4, 0.6, 1.2], [0.7, 0.6, 0.2]]);
-    (builder.build(&sky), PuddleMap { ground, size, cells })
+    (builder.build(&sky), PuddleMap { ground, size, cells, flow: None })
 }
 
 /// A pool in the rain, seen from so near that the rings of single drops are large.
@@ -157,7 +181,7 @@ fn case_rings(gpu: &Gpu) -> Result<Run, GpuError> {
     let sky = SkyLight::new(2, 1, &[[0.4, 0.6, 1.2], [0.7, 0.6, 0.2]]);
     let ground = Ground { middle: Vec3::ZERO, size: Vec2::splat(1.0), turn: 0.3, reach: 0.3 };
     let cells = (0..16).map(|i| [0.0, 0.01, 0.01, if i == 5 { 0.4 } else { 1.0 }]).collect();
-    let puddles = [(PuddleMap { ground, size: [4, 4], cells }, PuddleLook::default())];
+    let puddles = [(PuddleMap { ground, size: [4, 4], cells, flow: None }, PuddleLook::default())];
     let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 60.0).expect("a rain");
     let field = RainField::new(&rain, 3).expect("a rain");
     let eye = Vec3::new(0.05, 0.19, 0.14);
@@ -179,6 +203,26 @@ fn case_wakes(gpu: &Gpu) -> Result<Run, GpuError> {
     };
     let wakes = [wake(0, [64, 70], 0.05), wake(1, [30, 34], 0.09)];
     water_with(gpu, scene(), &maps(), Vec3::new(-0.4, 1.2, 2.6), 1, (None, &wakes))
+}
+
+/// Water that runs, faster in the middle than at the shores, and is not level.
+fn case_flow(gpu: &Gpu) -> Result<Run, GpuError> {
+    let runs = |(map, look): (PuddleMap, PuddleLook)| {
+        let [columns, rows] = map.size;
+        let words = |i: usize| {
+            let [u, v] = [(i % columns) as f32 / columns as f32, (i / columns) as f32 / rows as f32];
+            let speed = 0.7 * (1.0 - 2.0 * (u - 0.5).abs());
+            [[speed * v, 0.3 * speed], [0.05 * u - 0.02, 0.04 * v]].map(packing_pack_half)
+        };
+        let row = |k: usize| {
+            let ([a, b], [c, d]) = (words(2 * k), words(2 * k + 1));
+            [a, b, c, d]
+        };
+        (PuddleMap { flow: Some(FlowMap((0..columns * rows / 2).map(row).collect())), ..map }, look)
+    };
+    let mut scene = scene();
+    lay_at(&mut scene, &maps().map(runs), (None, &[]), 77.3);
+    picture(gpu, &scene, Vec3::new(-0.4, 1.2, 2.6), 1)
 }
 
 fn case(gpu: &Gpu, eye: Vec3, sky_rays: u32) -> Result<Run, GpuError> {
@@ -220,10 +264,16 @@ pub(super) fn laid(scene: &mut SceneData) {
 }
 
 /// Lays puddles with ripples on a scene.
-fn lay(
+fn lay(scene: &mut SceneData, puddles: &[(PuddleMap, PuddleLook)], moved: (Option<&RingRows>, &[WakeRows])) {
+    lay_at(scene, puddles, moved, 0.0);
+}
+
+/// The same at a time, s.
+fn lay_at(
     scene: &mut SceneData,
     puddles: &[(PuddleMap, PuddleLook)],
     (rings, wakes): (Option<&RingRows>, &[WakeRows]),
+    time_s: f64,
 ) {
     let finest = (0..128 * 128u32).map(|i| {
         let [a, b, ..] = rng_pcg4d([i, 4, 5, 6]).map(|word| rng_unit(word) - 0.5);
@@ -238,6 +288,7 @@ fn lay(
         shift: Vec3::ZERO,
         rings,
         wakes,
+        time_s,
     });
 }
 
@@ -260,6 +311,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         case("main_trace: water on a bank", case_bank),
         case("main_trace: rings of drops on a pool", case_rings),
         case("main_trace: wakes in puddles", case_wakes),
+        case("main_trace: running water", case_flow),
     ]
 }
 

@@ -3,7 +3,7 @@
 use downpour_math::ops;
 use glam::Vec3;
 
-use super::Ground;
+use super::{GUTTER_LOW_M, GUTTER_M, Ground};
 use crate::dice::Dice;
 use crate::material::Material;
 use crate::mesh::{Mesh, plain, tinted};
@@ -11,19 +11,69 @@ use crate::mesh::{Mesh, plain, tinted};
 /// Distance between gullies along a gutter.
 const GULLIES_M: f32 = 14.0;
 
-pub(super) fn covers(ground: &Ground, mesh: &mut Mesh) {
-    let mut dice = Dice::new(ground.random, 111);
-    let mut z = -dice.range(4.0, 10.0);
-    while z > -ground.length + 2.0 {
-        cover(ground, mesh, dice.range(-0.5, 0.5) * ground.half_road, z);
-        z -= dice.range(11.0, 22.0);
-    }
-    for side in [-1.0, 1.0] {
-        let mut z = -dice.range(3.0, 9.0);
-        while z > -ground.length + 3.0 {
-            gully(ground, mesh, side, z);
-            z -= GULLIES_M;
+/// Distances from the curb between which the gutter is open at a gully: points of the profile of the gutter.
+pub(super) const GULLY_REACH_M: [f32; 2] = [GUTTER_LOW_M, GUTTER_M];
+
+/// Half the length of that opening.
+const GULLY_HALF_M: f32 = 0.22;
+
+/// Width of a bar of the grating.
+const BAR_M: f32 = 0.03;
+
+/// Depth of a shaft: what lies below all streets is deeper.
+const SHAFT_M: f32 = 0.24;
+
+/// A gully in a gutter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Gully {
+    /// -1 on the left, 1 on the right.
+    side: f32,
+    z: f32,
+}
+
+impl Gully {
+    /// Where the gullies and, before them, the manhole covers of a street are: x and z.
+    pub(super) fn plan(random: u64, length: f32, half_road: f32) -> (Vec<[f32; 2]>, Vec<Self>) {
+        let mut dice = Dice::new(random, 111);
+        let mut covers = Vec::new();
+        let mut z = -dice.range(4.0, 10.0);
+        while z > -length + 2.0 {
+            covers.push([dice.range(-0.5, 0.5) * half_road, z]);
+            z -= dice.range(11.0, 22.0);
         }
+        let mut gullies = Vec::new();
+        for side in [-1.0, 1.0] {
+            let mut z = -dice.range(3.0, 9.0);
+            while z > -length + 3.0 {
+                gullies.push(Self { side, z });
+                z -= GULLIES_M;
+            }
+        }
+        (covers, gullies)
+    }
+
+    /// The part of the gutter on a side, 1 on the right, that it opens: from z to z.
+    pub(super) fn opening(&self, side: u32) -> Option<[f32; 2]> {
+        (side == u32::from(self.side > 0.0)).then_some([self.z - GULLY_HALF_M, self.z + GULLY_HALF_M])
+    }
+
+    /// How much the gutter on a side, 1 on the right, is lower at z, where water runs to the gully.
+    pub(super) fn dip(&self, z: f32, side: u32) -> f32 {
+        let away = (z - self.z) / DIP_REACH_M;
+        if side == u32::from(self.side > 0.0) { DIP_M * ops::exp(-away * away) } else { 0.0 }
+    }
+}
+
+/// Depth of a gutter's low part at a gully, and distance along the gutter at which 1/e of it is left.
+const DIP_M: f32 = 0.02;
+const DIP_REACH_M: f32 = 0.8;
+
+pub(super) fn covers(ground: &Ground, mesh: &mut Mesh) {
+    for &[x, z] in &ground.covers {
+        cover(ground, mesh, x, z);
+    }
+    for gully in &ground.gullies {
+        grating(ground, mesh, gully);
     }
 }
 
@@ -55,16 +105,33 @@ fn cover(ground: &Ground, mesh: &mut Mesh, x: f32, z: f32) {
     mesh.polygon(plain(Material::Cover), &ring);
 }
 
-/// A grating over a shaft in the gutter.
-fn gully(ground: &Ground, mesh: &mut Mesh, side: f32, z: f32) {
-    let x = side * (ground.half_road - 0.17);
-    let y = 0.012 + ground.gutter_wave(z, u32::from(side > 0.0)).max(0.0);
+/// A grating over a shaft in the gutter, as low as the gutter is at the curb.
+fn grating(ground: &Ground, mesh: &mut Mesh, gully: &Gully) {
+    let side = u32::from(gully.side > 0.0);
+    let top = ground.gutter_wave(gully.z, side) + 0.002;
+    let road = top + ground.edge();
     let bars = tinted(Material::Iron, [0.28, 0.26, 0.24]);
-    mesh.block(plain(Material::Soil), [x - 0.15, y - 0.06, z - 0.22], [0.30, 0.05, 0.44]);
-    for bar in 0..7 {
-        mesh.block(bars, [x - 0.15, y - 0.03, z - 0.215 + bar as f32 * 0.066], [0.30, 0.034, 0.03]);
+    let wall = plain(Material::Soil);
+    // From the curb to the road, and along the gutter.
+    let [near, far] = GULLY_REACH_M;
+    let half = GULLY_HALF_M;
+    let mut block = |paint, across: [f32; 2], heights: [f32; 2], along: [f32; 2]| {
+        let x = across.map(|distance| gully.side * (ground.half_road - distance));
+        let low = [x[0].min(x[1]), heights[0], gully.z + along[0]];
+        mesh.block(paint, low, [(x[1] - x[0]).abs(), heights[1] - heights[0], along[1] - along[0]]);
+    };
+    let pitch = (2.0 * half - BAR_M) / 6.0;
+    for bar in 0..7u8 {
+        let from = pitch * f32::from(bar) - half;
+        block(bars, [near, far], [top - 0.034, top], [from, from + BAR_M]);
     }
-    for edge in [-0.165, 0.145] {
-        mesh.block(bars, [x + edge, y - 0.03, z - 0.235], [0.02, 0.038, 0.47]);
-    }
+    block(bars, [near - 0.004, near + 0.016], [top - 0.034, top + 0.002], [-half, half]);
+    block(bars, [far - 0.016, far + 0.004], [top - 0.034, road], [-half, half]);
+    // The shaft, under the gutter around it.
+    let (floor, rim) = (top - SHAFT_M, top - 0.004);
+    block(wall, [near - 0.03, near], [floor, rim], [-half - 0.03, half + 0.03]);
+    block(wall, [far, far + 0.03], [floor, rim], [-half - 0.03, half + 0.03]);
+    block(wall, [near, far], [floor, rim], [-half - 0.03, -half]);
+    block(wall, [near, far], [floor, rim], [half, half + 0.03]);
+    block(wall, [near, far], [floor - 0.02, floor], [-half, half]);
 }

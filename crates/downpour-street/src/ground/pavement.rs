@@ -3,7 +3,8 @@
 use downpour_math::ops;
 use glam::{Vec2, Vec3};
 
-use super::{CURB_HEIGHT_M, CURB_M, GUTTER_M, Ground, LANE_M};
+use super::covers::GULLY_REACH_M;
+use super::{CURB_HEIGHT_M, CURB_M, GUTTER_LOW_M, GUTTER_M, Ground, LANE_M};
 use crate::material::Material;
 use crate::mesh::Mesh;
 use crate::noise::{hash, mix, smooth, world};
@@ -52,6 +53,27 @@ impl Line {
         }
     }
 
+    /// Stations at both ends of an opening of the gutter, of a line along z.
+    fn cut(&mut self, opening: [f32; 2]) {
+        for z in opening {
+            let after = self.stations.windows(2).position(|pair| {
+                let [from, to] = [pair[0].at.y, pair[1].at.y];
+                pair.iter().all(|station| station.out == Vec2::X) && (from.min(to)..from.max(to)).contains(&z)
+            });
+            let Some(after) = after else { continue };
+            let [from, to] = [&self.stations[after], &self.stations[after + 1]];
+            let t = (z - from.at.y) / (to.at.y - from.at.y);
+            let station = Station {
+                at: from.at.lerp(to.at, t),
+                out: from.out,
+                length: mix(from.length, to.length, t),
+                stone: from.stone,
+                is_joint: false,
+            };
+            self.stations.insert(after + 1, station);
+        }
+    }
+
     /// Stones around a corner: a quarter of a circle between two directions to the houses.
     fn corner(&mut self, center: Vec2, radius: f32, from: Vec2, to: Vec2) {
         const STONES: i32 = 6;
@@ -92,7 +114,7 @@ fn profile(ground: &Ground) -> Vec<ProfilePoint> {
     let mut all = vec![
         point(-GUTTER_M, 0.0, ground.edge(), Material::Setts),
         point(-0.16, 0.0, 0.004, Material::Setts),
-        point(-0.05, 0.0, 0.0, Material::Setts),
+        point(-GUTTER_LOW_M, 0.0, 0.0, Material::Setts),
         point(0.0, 0.0, 0.003, Material::Curb),
         point(0.006, 0.80, 0.0, Material::Curb),
         point(0.013, 0.93, 0.0, Material::Curb),
@@ -123,6 +145,7 @@ fn sweep(ground: &Ground, mesh: &mut Mesh, line: &Line, mirror: f32, side: u32) 
     let stations = &line.stations;
     let columns = profile.len() - 1;
     let random = |stone: i32, n: u32| hash(stone, side as i32, 241 + n + ground.seed);
+    let openings: Vec<[f32; 2]> = ground.gullies.iter().filter_map(|gully| gully.opening(side)).collect();
     // Mirrored, the columns run the other way, so that the front stays above.
     let column = |i: usize| if mirror > 0.0 { i } else { columns - i };
     mesh.grid(
@@ -167,9 +190,13 @@ fn sweep(ground: &Ground, mesh: &mut Mesh, line: &Line, mirror: f32, side: u32) 
             };
             (p, uv, Vec3::splat(tint.min(1.0)))
         },
-        |i, _| {
-            let (from, to) = (column(i), column(i + 1));
-            Some(profile[from.min(to)].skin)
+        |i, j| {
+            let (from, to) = (column(i).min(column(i + 1)), column(i).max(column(i + 1)));
+            let distances = -GULLY_REACH_M[1]..=-GULLY_REACH_M[0];
+            let is_low = [from, to].iter().all(|&k| distances.contains(&profile[k].distance));
+            let z = mix(stations[j].at.y, stations[j + 1].at.y, 0.5);
+            let is_open = |[low, high]: [f32; 2]| is_low && (low..high).contains(&z);
+            (!openings.iter().copied().any(is_open)).then_some(profile[from].skin)
         },
     );
 }
@@ -187,7 +214,11 @@ pub(super) fn along(ground: &Ground, mesh: &mut Mesh, mirror: f32) {
     line.straight(Vec2::new(x, near_center.y), Vec2::new(x, far_center.y), Vec2::X);
     line.corner(far_center, radius, Vec2::X, Vec2::Y);
     line.straight(Vec2::new(far_center.x, far), Vec2::new(reach, far), Vec2::Y);
-    sweep(ground, mesh, &line, mirror, u32::from(mirror > 0.0));
+    let side = u32::from(mirror > 0.0);
+    for opening in ground.gullies.iter().filter_map(|gully| gully.opening(side)) {
+        line.cut(opening);
+    }
+    sweep(ground, mesh, &line, mirror, side);
 }
 
 /// The far side of a lane.

@@ -658,7 +658,7 @@ mod tests {
         let map = |size: [usize; 2], depth: f32| {
             let ground = Ground { middle: Vec3::ZERO, size: Vec2::ONE, turn: 0.0, reach: 0.3 };
             let cells = (0..size[0] * size[1]).map(|i| [0.0, i as f32, depth, 1.0]).collect();
-            (PuddleMap { ground, size, cells }, PuddleLook::default())
+            (PuddleMap { ground, size, cells, flow: None }, PuddleLook::default())
         };
         let (large, small) = (map([100, 100], 0.01), map([20, 20], 0.02));
         let wake = WakeRows { puddle: 1, size: [8, 8], cell_m: 0.1, slopes: vec![[0.1; 4]; 64] };
@@ -682,7 +682,15 @@ mod tests {
         for (k, (puddles, wakes, wanted)) in steps.into_iter().enumerate() {
             let mut scene = scene.clone();
             let (shape, shift) = ((128, 7, 0.01), Vec3::ZERO);
-            scene.set_puddles(&PuddleRows { puddles, shape, slopes: &[], shift, rings: None, wakes });
+            scene.set_puddles(&PuddleRows {
+                puddles,
+                shape,
+                slopes: &[],
+                shift,
+                rings: None,
+                wakes,
+                time_s: 0.0,
+            });
             *device.count.lock().unwrap() = 0;
             let now = match on_device.take() {
                 Some(before) => before.renewed(&device, &scene),

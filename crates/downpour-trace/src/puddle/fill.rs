@@ -1,14 +1,12 @@
 //! Hollows of the ground, filled by a part of their depth or by the rain that runs into them.
 //!
-//! Law: water stands no higher than the lowest way out lets it. The heights of all ways out are found from the border inwards,
-//! lowest first (R. Barnes et al., Priority-Flood, Computers & Geosciences 62, 2014). Cells of the border and cells without
-//! ground let water out. The cell from which a cell was found is the way its water takes; so each hollow has a catchment, and the
-//! rain on it less what the ground keeps is the water in the hollow, up to where it spills. What spills is gone.
-
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+//! Law: water stands no higher than the lowest way out lets it ([`Drainage`]). Each hollow has a catchment, and the rain on it less what
+//! the ground keeps is the water in the hollow, up to where it spills. What spills runs on ([`running`](super::running)); it fills no
+//! other hollow sooner than its own catchment does.
 
 use rayon::prelude::*;
+
+use super::drainage::{Drainage, neighbors};
 
 /// Ground as a grid of cells, row by row.
 #[derive(Clone, Copy, Debug)]
@@ -59,6 +57,18 @@ pub struct Basin {
     catchment: f32,
 }
 
+/// The hollows of some ground, and whose water they get.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Basins {
+    /// The hollows.
+    pub basins: Vec<Basin>,
+    /// For each cell the hollow that its water comes to first, its own for the cells of a hollow; [`NO_BASIN`]: it runs off.
+    pub(super) of_cell: Vec<u32>,
+}
+
+/// The water of a cell comes to no hollow.
+pub(super) const NO_BASIN: u32 = u32::MAX;
+
 impl Basin {
     /// Level, m, of the water that fills it.
     #[must_use]
@@ -73,6 +83,21 @@ impl Basin {
                 self.level_of(self.volume(left) + f64::from(since_m * self.catchment)).min(most)
             }
         }
+    }
+
+    /// Height at which it spills, m.
+    pub(super) fn spill(&self) -> f32 {
+        self.spill
+    }
+
+    /// Height of the way out over the lowest cell, m.
+    pub(super) fn depth(&self) -> f32 {
+        self.heights.first().map_or(0.0, |bottom| self.spill - bottom)
+    }
+
+    /// Its cells, the lowest first.
+    pub(super) fn cells(&self) -> &[u32] {
+        &self.cells
     }
 
     /// Volume of the water at a level, m, in cells times m.
@@ -101,15 +126,15 @@ impl Basin {
 
 /// The hollows of some ground.
 #[must_use]
-pub fn basins(hollows: &Hollows<'_>) -> Vec<Basin> {
-    let Drainage { spill, order, next } = drainage(hollows);
+pub fn basins(hollows: &Hollows<'_>, drainage: &Drainage) -> Basins {
+    let Drainage { spill, order, next } = drainage;
     let [columns, rows] = hollows.size;
     let mut basins: Vec<Basin> = Vec::new();
-    let mut of_cell = vec![u32::MAX; columns * rows];
+    let mut of_cell = vec![NO_BASIN; columns * rows];
     let mut ahead = Vec::new();
     for start in 0..columns * rows {
         let floods = |cell: usize| spill[cell] > hollows.ground[cell];
-        if of_cell[start] != u32::MAX || !floods(start) {
+        if of_cell[start] != NO_BASIN || !floods(start) {
             continue;
         }
         // Cells that touch have one level: each is a way out for the other.
@@ -119,7 +144,7 @@ pub fn basins(hollows: &Hollows<'_>) -> Vec<Basin> {
         while let Some(cell) = ahead.pop() {
             cells.push(cell as u32);
             for beside in neighbors(hollows.size, cell) {
-                if of_cell[beside] == u32::MAX && floods(beside) {
+                if of_cell[beside] == NO_BASIN && floods(beside) {
                     of_cell[beside] = basins.len() as u32;
                     ahead.push(beside);
                 }
@@ -131,15 +156,15 @@ pub fn basins(hollows: &Hollows<'_>) -> Vec<Basin> {
         basins.push(Basin { cells, heights, spill: spill[start], catchment: 0.0 });
     }
     // A cell's water goes where that of the cell goes that it runs to: those are found before it.
-    for cell in order {
-        if of_cell[cell] == u32::MAX {
-            of_cell[cell] = next[cell].map_or(u32::MAX, |next| of_cell[next]);
+    for &cell in order {
+        if of_cell[cell] == NO_BASIN {
+            of_cell[cell] = next[cell].map_or(NO_BASIN, |next| of_cell[next]);
         }
         if let Some(basin) = basins.get_mut(of_cell[cell] as usize) {
             basin.catchment += hollows.open[cell];
         }
     }
-    basins
+    Basins { basins, of_cell }
 }
 
 /// The level, m, of the water in each hollow; `None` where it is too shallow to stand.
@@ -166,79 +191,20 @@ pub fn fill(count: usize, basins: &[Basin], filled: &[Option<f32>]) -> Vec<Optio
     levels
 }
 
-/// Ways of the water over some ground.
-struct Drainage {
-    /// Height that water reaches over each cell before it runs out: the ground itself where it runs off at once.
-    spill: Vec<f32>,
-    /// Cells in the order in which they were found, from the border inwards.
-    order: Vec<usize>,
-    /// Cell to which the water of each runs.
-    next: Vec<Option<usize>>,
-}
-
-fn drainage(hollows: &Hollows<'_>) -> Drainage {
-    let [columns, rows] = hollows.size;
-    let ground = |cell: usize| hollows.ground.get(cell).copied().filter(|h| h.is_finite());
-    let mut levels = vec![f32::INFINITY; columns * rows];
-    let mut next_of = vec![None; columns * rows];
-    let mut order = Vec::with_capacity(columns * rows);
-    let mut open = BinaryHeap::new();
-    let mut let_out = |cell: usize, level: f32, levels: &mut Vec<f32>| {
-        levels[cell] = level;
-        // Ties by number: the same order everywhere.
-        open.push(Reverse((ordered(level), cell)));
-    };
-    for cell in 0..columns * rows {
-        let (x, y) = (cell % columns, cell / columns);
-        let border = x == 0 || y == 0 || x + 1 == columns || y + 1 == rows;
-        match ground(cell) {
-            None => let_out(cell, f32::NEG_INFINITY, &mut levels),
-            Some(height) if border => let_out(cell, height, &mut levels),
-            Some(_) => {}
-        }
-    }
-    while let Some(Reverse((_, cell))) = open.pop() {
-        order.push(cell);
-        for next in neighbors(hollows.size, cell) {
-            if levels[next] == f32::INFINITY {
-                let own = ground(next).unwrap_or(f32::NEG_INFINITY);
-                levels[next] = own.max(levels[cell]);
-                next_of[next] = Some(cell);
-                open.push(Reverse((ordered(levels[next]), next)));
-            }
-        }
-    }
-    Drainage { spill: levels, order, next: next_of }
-}
-
-/// A whole number that is in the same order as the numbers.
-fn ordered(level: f32) -> u32 {
-    let bits = level.to_bits();
-    if bits >> 31 == 1 { !bits } else { bits | 1 << 31 }
-}
-
-/// The four cells beside a cell.
-fn neighbors([columns, rows]: [usize; 2], cell: usize) -> impl Iterator<Item = usize> {
-    let (x, y) = (cell % columns, cell / columns);
-    let beside = [
-        (x > 0).then(|| cell - 1),
-        (x + 1 < columns).then_some(cell + 1),
-        (y > 0).then(|| cell - columns),
-        (y + 1 < rows).then_some(cell + columns),
-    ];
-    beside.into_iter().flatten()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use glam::Vec2;
 
+    fn found(hollows: &Hollows<'_>) -> Vec<Basin> {
+        basins(hollows, &Drainage::new(hollows)).basins
+    }
+
     fn filled(size: [usize; 2], fraction: f32, ground: impl Fn(f32, f32) -> f32) -> Vec<Option<f32>> {
         let ground: Vec<f32> =
             (0..size[0] * size[1]).map(|i| ground((i % size[0]) as f32, (i / size[0]) as f32)).collect();
         let open = vec![1.0; ground.len()];
-        let basins = basins(&Hollows { size, ground: &ground, open: &open });
+        let basins = found(&Hollows { size, ground: &ground, open: &open });
         let limits = FillLimits { deepest: 10.0, least: 1.0e-3 };
         fill(ground.len(), &basins, &levels(&basins, &Filling::Fraction(fraction), &limits))
     }
@@ -280,7 +246,7 @@ mod tests {
         let ground: Vec<f32> =
             (0..400u16).map(|i| if (5..8).contains(&(i % 20)) && i / 20 == 9 { -2.0 } else { 0.0 }).collect();
         let levels = |deepest, least| {
-            let basins = basins(&Hollows { size: [20, 20], ground: &ground, open: &[1.0; 400] });
+            let basins = found(&Hollows { size: [20, 20], ground: &ground, open: &[1.0; 400] });
             let limits = FillLimits { deepest, least };
             fill(400, &basins, &levels(&basins, &Filling::Fraction(1.0), &limits))[9 * 20 + 6]
         };
@@ -312,7 +278,7 @@ mod tests {
     #[test]
     fn rain_fills_a_hollow_from_its_catchment() {
         let ground = funnel();
-        let basins = basins(&Hollows { size: [40, 30], ground: &ground, open: &[1.0; 1200] });
+        let basins = found(&Hollows { size: [40, 30], ground: &ground, open: &[1.0; 1200] });
         assert_eq!(basins.len(), 1);
         let catchment = 13.0 * 12.0;
         assert!((basins[0].catchment - catchment).abs() < 1.0, "{}", basins[0].catchment);
@@ -341,7 +307,7 @@ mod tests {
     fn under_a_roof_no_rain_is_caught() {
         let ground = funnel();
         let open: Vec<f32> = (0..1200u16).map(|i| if i % 40 < 20 { 1.0 } else { 0.0 }).collect();
-        let basins = basins(&Hollows { size: [40, 30], ground: &ground, open: &open });
+        let basins = found(&Hollows { size: [40, 30], ground: &ground, open: &open });
         assert!((basins[0].catchment - 7.0 * 12.0).abs() < 1.0, "{}", basins[0].catchment);
     }
 }

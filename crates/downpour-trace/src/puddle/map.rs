@@ -8,8 +8,11 @@ use downpour_shaders::render::puddle_water::PUDDLE_WATER_MIN_DEPTH;
 use glam::{DVec2, Vec2, Vec3};
 use rayon::prelude::*;
 
-use super::fill::{Basin, FillLimits, Filling, Hollows, basins, fill, levels};
+use super::drainage::Drainage;
+use super::fill::{Basins, FillLimits, Filling, Hollows, basins, fill, levels};
+use super::flow::{FlowMap, flow_map};
 use super::relief::Relief;
+use super::running::{Catchments, Running};
 use crate::data::SceneData;
 
 /// Land beside water tells how far it lies over the water's level up to this far, m: the shore runs between the cells.
@@ -48,6 +51,8 @@ pub(super) struct WaterAt {
     pub(super) depth: f32,
     /// Fraction of the rain that arrives.
     pub(super) open: f32,
+    /// Velocity along x and z, m/s.
+    pub(super) velocity: Vec2,
 }
 
 /// Depths of water over a rectangle of the ground.
@@ -60,6 +65,8 @@ pub struct PuddleMap {
     /// For each cell: height of the ground over the middle (m), rise of the water's surface over that (m), depth (m, below
     /// 0 on land), fraction of the rain that arrives.
     pub cells: Arc<[[f32; 4]]>,
+    /// Velocities of the water; `None` where all of it stands.
+    pub flow: Option<FlowMap>,
 }
 
 impl Ground {
@@ -113,7 +120,8 @@ pub struct PuddleGround {
     open: Vec<f32>,
     /// Heights with the relief, m.
     uneven: Vec<f32>,
-    basins: Vec<Basin>,
+    drainage: Drainage,
+    basins: Basins,
 }
 
 impl PuddleGround {
@@ -130,28 +138,47 @@ impl PuddleGround {
                 model[i] + relief.height(Vec2::new(position.x, position.z))
             })
             .collect();
-        let basins = basins(&Hollows { size, ground: &uneven, open: &open });
-        Self { ground: *ground, size, model, open, uneven, basins }
+        let hollows = Hollows { size, ground: &uneven, open: &open };
+        let drainage = Drainage::new(&hollows);
+        let basins = basins(&hollows, &drainage);
+        Self { ground: *ground, size, model, open, uneven, drainage, basins }
     }
 
     /// Water in its hollows.
     #[must_use]
     pub fn filled(&self, filling: &Filling, limits: &FillLimits) -> PuddleMap {
-        self.with_levels(&self.levels(filling, limits))
+        self.with_levels(&self.levels(filling, limits), None)
     }
 
     /// The level, m, of the water in each hollow; `None` where it is too shallow to stand.
     #[must_use]
     pub fn levels(&self, filling: &Filling, limits: &FillLimits) -> Vec<Option<f32>> {
-        levels(&self.basins, filling, limits)
+        levels(&self.basins.basins, filling, limits)
     }
 
-    /// Water up to [`PuddleGround::levels`].
+    /// The water that runs with a runoff in m/s where hollows have filled to some [`PuddleGround::levels`]; `None` if none does.
     #[must_use]
-    pub fn with_levels(&self, filled: &[Option<f32>]) -> PuddleMap {
-        let Self { ground, size, model, open, uneven, basins } = self;
+    pub fn running(&self, filled: &[Option<f32>], runoff_m_s: f32, limits: &FillLimits) -> Option<Running> {
+        let [columns, rows] = self.size;
+        let catchments = Catchments {
+            hollows: Hollows { size: self.size, ground: &self.uneven, open: &self.open },
+            drainage: &self.drainage,
+            basins: &self.basins,
+            cell_m: self.ground.size / Vec2::new(columns as f32, rows as f32),
+        };
+        catchments.running(filled, runoff_m_s, limits)
+    }
+
+    /// Water up to [`PuddleGround::levels`], and water that runs.
+    #[must_use]
+    pub fn with_levels(&self, filled: &[Option<f32>], running: Option<&Running>) -> PuddleMap {
+        let Self { ground, size, model, open, uneven, basins, .. } = self;
         let [columns, rows] = *size;
-        let mut levels = fill(columns * rows, basins, filled);
+        let mut levels = fill(columns * rows, &basins.basins, filled);
+        if let Some(running) = running {
+            let deeper = |(level, &runs): (&mut Option<f32>, &Option<f32>)| *level = runs.or(*level);
+            levels.iter_mut().zip(&running.levels).for_each(deeper);
+        }
         // Who is beside water knows its level too, so that the shore runs between the cells.
         let wet: Vec<bool> = levels.iter().map(Option::is_some).collect();
         for _ in 0..SHORE_CELLS {
@@ -168,7 +195,8 @@ impl PuddleGround {
             [height, (level - model[i]).max(0.0), depth, open[i]]
         };
         let cells: Vec<[f32; 4]> = (0..columns * rows).into_par_iter().map(cell).collect();
-        PuddleMap { ground: *ground, size: *size, cells: cells.into() }
+        let flow = running.map(|running| flow_map(ground, *size, &levels, &running.velocities));
+        PuddleMap { ground: *ground, size: *size, cells: cells.into(), flow }
     }
 }
 
@@ -202,7 +230,8 @@ impl PuddleMap {
                 [-2.0 * ground.reach, 0.0, LAND_M, 0.0]
             }
         };
-        Self { ground: *ground, size, cells: model.iter().zip(&open).zip(depths).map(cell).collect() }
+        let cells = model.iter().zip(&open).zip(depths).map(cell).collect();
+        Self { ground: *ground, size, cells, flow: None }
     }
 
     /// Where a position is, m from the map's corner along its axes; `turn` is the map's.
@@ -221,7 +250,9 @@ impl PuddleMap {
         };
         let index = cell(part.y, rows)? * columns + cell(part.x, columns)?;
         let [ground, rise, depth, open] = *self.cells.get(index)?;
-        (depth >= PUDDLE_WATER_MIN_DEPTH).then_some(WaterAt { ground, level: ground + rise, depth, open })
+        let velocity = self.flow.as_ref().map_or(Vec2::ZERO, |flow| flow.velocity(index));
+        let water = WaterAt { ground, level: ground + rise, depth, open, velocity };
+        (depth >= PUDDLE_WATER_MIN_DEPTH).then_some(water)
     }
 
     /// Area under water, m^2.

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use downpour_shaders::render::puddle_rings::PUDDLE_RINGS_LIFE;
 use downpour_shaders::render::puddle_water::PUDDLE_WATER_MIN_DEPTH;
 use downpour_sim::impacts::Crossing;
-use glam::{DVec2, DVec3, Vec2, Vec3};
+use glam::{DVec2, DVec3, Vec2};
 use rayon::prelude::*;
 
 use super::map::{PuddleMap, turned};
@@ -52,6 +52,8 @@ struct Found {
 pub(super) struct Impact {
     /// Where, m from the origin of the maps.
     pub(super) at: Vec2,
+    /// Velocity of the water there, along x and z, m/s.
+    pub(super) drift: Vec2,
     /// When it comes through the plane at the height of the map's middle, s, and how long before that it meets the water.
     pub(super) time_s: f64,
     pub(super) ago_s: f32,
@@ -194,15 +196,16 @@ fn impacts(map: &PuddleMap, origin: DVec3, crossings: &[Crossing]) -> Vec<Impact
     let turn = turned(map.ground.turn);
     let impact = |crossing: &Crossing| {
         let at = (crossing.position - origin).as_vec3();
-        let [rise, _] = map.surface(turn, at)?;
+        let rise = map.water_at(map.place(turn, at))?.level;
         // From the height of the map's middle to the surface.
         let ago_s = rise / crossing.velocity.y.min(-0.1);
         let at = at + crossing.velocity * ago_s;
-        let [_, open] = map.surface(turn, at)?;
+        let water = map.water_at(map.place(turn, at))?;
         // Where a part of the rain arrives, a part of the drops does.
         let chance = (crossing.id >> 40) as f32 / 16_777_216.0;
         let (time_s, diameter, id) = (crossing.time_s, crossing.diameter, crossing.id);
-        (chance < open).then_some(Impact { at: Vec2::new(at.x, at.z), time_s, ago_s, diameter, id })
+        let (at, drift) = (Vec2::new(at.x, at.z), water.velocity);
+        (chance < water.open).then_some(Impact { at, drift, time_s, ago_s, diameter, id })
     };
     crossings.iter().filter_map(impact).collect()
 }
@@ -244,14 +247,5 @@ impl Shores {
             }
         }
         Self { cells: Arc::clone(&map.cells), squares }
-    }
-}
-
-impl PuddleMap {
-    /// Height of the water's surface over that of the map's middle at a position (m), and the fraction of the rain that arrives there;
-    /// `None` on land. `turn` is the map's.
-    fn surface(&self, turn: Vec2, position: Vec3) -> Option<[f32; 2]> {
-        let water = self.water_at(self.place(turn, position))?;
-        Some([water.level, water.open])
     }
 }

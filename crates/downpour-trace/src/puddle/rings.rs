@@ -196,13 +196,16 @@ impl Rings {
     /// The ring of a drop in a picture; `None` if there is none.
     fn placed(&self, impact: &Impact, placing: &Placing) -> Option<Placed> {
         let Placing { time_s, corner, middle } = *placing;
-        let age = ((time_s - impact.time_s) as f32 - impact.ago_s) / PUDDLE_RINGS_LIFE;
+        let age_s = (time_s - impact.time_s) as f32 - impact.ago_s;
+        let age = age_s / PUDDLE_RINGS_LIFE;
+        // Running water takes its rings along.
+        let at = impact.at + impact.drift * age_s;
         // No ring is wider than a cell.
-        let is_near = impact.at.distance(middle) < REACH_M as f32 + PUDDLE_RINGS_CELL;
+        let is_near = at.distance(middle) < REACH_M as f32 + PUDDLE_RINGS_CELL;
         if !is_near || !(0.0..1.0).contains(&age) {
             return None;
         }
-        let place = (impact.at - corner) / PUDDLE_RINGS_CELL;
+        let place = (at - corner) / PUDDLE_RINGS_CELL;
         let cell = place.floor();
         let [x, z] =
             [cell.x, cell.y].map(|n| if n >= 0.0 && n < CELLS as f32 { Some(n as usize) } else { None });
@@ -349,7 +352,7 @@ mod tests {
             Ground { middle: Vec3::new(1.0, 0.2, -2.0), size: Vec2::splat(4.0), turn: 0.3, reach: 0.3 };
         let open = |i: usize| if i % 40 < 10 { 0.0 } else { 1.0 };
         let cells = (0..1600).map(|i| [-0.01, 0.02, 0.02, open(i)]).collect();
-        (PuddleMap { ground, size: [40, 40], cells }, PuddleLook::default())
+        (PuddleMap { ground, size: [40, 40], cells, flow: None }, PuddleLook::default())
     }
 
     fn scene_of(rings: &RingRows, puddles: &[(PuddleMap, PuddleLook)], slopes: &[[f32; 4]]) -> SceneData {
@@ -361,6 +364,7 @@ mod tests {
             shift: Vec3::ZERO,
             rings: Some(rings),
             wakes: &[],
+            time_s: 0.0,
         });
         scene
     }

@@ -11,6 +11,7 @@ use super::map::{PuddleMap, turned};
 use super::rings::RingRows;
 use super::wakes::WakeRows;
 use crate::data::SceneData;
+use crate::scene::puddle_flow::cycle_row;
 use crate::shared_rows::SharedRows;
 
 /// Appearance of a puddle.
@@ -69,6 +70,8 @@ pub struct PuddleRows<'a> {
     pub rings: Option<&'a RingRows>,
     /// Waves of what moves through some of the puddles.
     pub wakes: &'a [WakeRows],
+    /// Time of the picture, s: ripples move with water that runs.
+    pub time_s: f64,
 }
 
 /// Water on the ground as the shaders read it. Twin of the WGSL struct of the same name.
@@ -187,8 +190,8 @@ impl SceneData {
                 ]),
                 words([look.rippling_depth, own.x, own.y, if look.has_rings() { 1.0 } else { 0.0 }]),
             ]);
-            // No wakes, as far as it is known yet.
-            self.table.push([0; 4]);
+            // No wakes and no flow, as far as it is known yet.
+            self.table.extend([[0; 4], cycle_row(rows.time_s)]);
         }
         let (size, levels, cell) = rows.shape;
         let size = if rows.slopes.is_empty() { 0 } else { size };
@@ -200,10 +203,12 @@ impl SceneData {
         self.table.extend(rows.slopes.iter().map(|&slope| words(slope)));
         if let Some(rings) = rows.rings {
             rings.extend(&mut self.table);
-            self.shared.push(SharedRows::Words(rings.slopes()));
+            self.shared.push(SharedRows::Slopes(rings.slopes()));
         }
-        let maps = puddles.iter().map(|(map, _)| SharedRows::Numbers(Arc::clone(&map.cells)));
-        self.shared.extend(maps);
+        for (k, (map, _)) in (0u32..).zip(puddles) {
+            self.shared.push(SharedRows::Map(k, Arc::clone(&map.cells)));
+            self.shared.extend(map.flow.iter().map(|flow| SharedRows::Flow(k, Arc::clone(&flow.0))));
+        }
         for wake in rows.wakes.iter().filter(|wake| wake.puddle < puddles.len()) {
             let [columns, lines] = wake.size.map(|count| count as u32);
             let row = self.puddles + wake.puddle as u32 * PUDDLE_WATER_ROWS + PUDDLE_WAKE_ROW;

@@ -8,7 +8,8 @@
 //! again, pieces of it are mixed over a mesh of triangles with weights whose squares sum to 1: the variance of the slopes
 //! stays (E. Heitz and F. Neyret, High-Performance By-Example Noise, 2018, for a field that is normal already). What a
 //! pixel does not resolve is a variance of the slope (M. Olano and D. Baker, LEAN Mapping, 2010). Near the eye the larger
-//! drops have rings of their own (`puddle_rings`), and the lattice has what is left of the variance.
+//! drops have rings of their own (`puddle_rings`), and the lattice has what is left of the variance. Running water takes both along
+//! (`puddle_flow`).
 //!
 //! Diffuse ground under water is darker: light is thrown back between ground and surface, and what comes out spreads over a
 //! larger cone (J. Lekner and M. Dorf, Applied Optics 27, 1988).
@@ -22,6 +23,7 @@ use downpour_shaders::render::puddle_water::{
 use glam::{Vec2, Vec3, Vec4};
 
 use super::SceneView;
+use super::puddle_flow::{puddle_flow_moves, puddle_flow_phase, puddle_flow_place};
 use super::puddle_rings::{puddle_rings_shown, smoothstep};
 use crate::puddle::RenderPuddle;
 
@@ -111,6 +113,32 @@ impl SceneView<'_> {
         slope.extend((mixed.z - slope.dot(slope)).max(0.0))
     }
 
+    /// The ripples at a place in steps of the mesh: slopes, and the variance that the level does not show. The level begins at row
+    /// `first`, with `steps` texels per step.
+    fn puddle_water_mixed(&self, place: Vec2, first: u32, size: u32, steps: f32) -> Vec3 {
+        // Skewed, so that triangles become halves of squares.
+        let sx = place.x - place.y * 0.577_350_27;
+        let sz = place.y * 1.154_700_5;
+        let corner = [sx.floor() as i32, sz.floor() as i32];
+        let (fx, fz) = (sx - sx.floor(), sz - sz.floor());
+        let third = 1.0 - fx - fz;
+        let (weights, steps_to) = if fx + fz < 1.0 {
+            ([third, fz, fx], [[0, 0], [0, 1], [1, 0]])
+        } else {
+            ([-third, 1.0 - fz, 1.0 - fx], [[1, 1], [1, 0], [0, 1]])
+        };
+        let (mut sum, mut spread, mut square) = (Vec2::ZERO, 0.0, 0.0);
+        for (weight, step) in weights.into_iter().zip(steps_to) {
+            let vertex = [corner[0].wrapping_add(step[0]), corner[1].wrapping_add(step[1])];
+            let middle = Vec2::new(vertex[0] as f32 + 0.5 * vertex[1] as f32, 0.866_025_4 * vertex[1] as f32);
+            let piece = self.puddle_water_piece(vertex, place - middle, first, size, steps);
+            sum += piece.truncate() * weight;
+            spread += piece.z * weight * weight;
+            square += weight * weight;
+        }
+        (sum / square.sqrt()).extend(spread / square)
+    }
+
     /// Slopes along x and z of the water's surface, and the variance of the slope within a footprint (m).
     pub(crate) fn puddle_water_ripple(
         &self,
@@ -124,10 +152,16 @@ impl SceneView<'_> {
         let (look, more) = (water.ripples, water.own);
         let head = self.data.puddle_ripples();
         let cell = head.cell;
+        let flow = self.data.puddle_flow_load(puddle);
+        // Velocity, and slopes of the surface.
+        let runs = match flow.first {
+            0 => Vec4::ZERO,
+            first => self.data.puddle_flow_at(first, &water, position),
+        };
         // Scale, cosine and sine of the angle, influence.
         let strength = look.w * open * smoothstep(0.0, more.x.max(1.0e-6), depth);
         if head.size == 0 || strength <= 0.0 {
-            return Vec3::ZERO;
+            return Vec3::new(runs.z, runs.w, 0.0);
         }
         let finest = footprint / (look.x * cell);
         let level = ((ops::log2(finest.max(1.0)) + 0.5).floor().max(0.0) as u32).min(head.levels - 1);
@@ -138,25 +172,27 @@ impl SceneView<'_> {
 
         let px = (position.x * look.y + position.z * look.z) / (look.x * PUDDLE_WATER_MESH) + more.y;
         let pz = (position.z * look.y - position.x * look.z) / (look.x * PUDDLE_WATER_MESH) + more.z;
-        // Skewed, so that triangles become halves of squares.
-        let sx = px - pz * 0.577_350_27;
-        let sz = pz * 1.154_700_5;
-        let corner = [sx.floor() as i32, sz.floor() as i32];
-        let (fx, fz) = (sx - sx.floor(), sz - sz.floor());
-        let third = 1.0 - fx - fz;
-        let (weights, steps_to) = if fx + fz < 1.0 {
-            ([third, fz, fx], [[0, 0], [0, 1], [1, 0]])
-        } else {
-            ([-third, 1.0 - fz, 1.0 - fx], [[1, 1], [1, 0], [0, 1]])
+        let place = Vec2::new(px, pz);
+        let moves = puddle_flow_moves((runs.x * runs.x + runs.y * runs.y).sqrt());
+        let weighted = |place: Vec2, weight: f32| {
+            self.puddle_water_mixed(place, first, size, steps) * Vec3::new(weight, weight, weight * weight)
         };
-        let (mut sum, mut spread, mut square) = (Vec2::ZERO, 0.0, 0.0);
-        for (weight, step) in weights.into_iter().zip(steps_to) {
-            let vertex = [corner[0].wrapping_add(step[0]), corner[1].wrapping_add(step[1])];
-            let middle = Vec2::new(vertex[0] as f32 + 0.5 * vertex[1] as f32, 0.866_025_4 * vertex[1] as f32);
-            let piece = self.puddle_water_piece(vertex, Vec2::new(px, pz) - middle, first, size, steps);
-            sum += piece.truncate() * weight;
-            spread += piece.z * weight * weight;
-            square += weight * weight;
+        let (mut mixed, mut square) = (Vec3::ZERO, 0.0);
+        if moves < 1.0 {
+            let weight = 1.0 - moves;
+            mixed = weighted(place, weight);
+            square = weight * weight;
+        }
+        if moves > 0.0 {
+            let along = Vec2::new(runs.x * look.y + runs.y * look.z, runs.y * look.y - runs.x * look.z)
+                / (look.x * PUDDLE_WATER_MESH);
+            for second in 0..2 {
+                let part = puddle_flow_phase(flow.phase, second);
+                let weight = moves * part.y;
+                let own = puddle_flow_place(flow.phase, flow.cycle, second);
+                mixed += weighted(place - along * part.x + own, weight);
+                square += weight * weight;
+            }
         }
         let (mut lattice, mut rings) = (1.0, Vec2::ZERO);
         if water.rings > 0.0 {
@@ -170,12 +206,12 @@ impl SceneView<'_> {
                 lattice = (1.0 - shown * shown * drops.part).sqrt();
             }
         }
-        let slope = sum * (strength * lattice / square.sqrt());
+        let slope = mixed.truncate() * (strength * lattice / square.sqrt());
         // Back to the world's axes.
         Vec3::new(
-            slope.x * look.y - slope.y * look.z + rings.x,
-            slope.y * look.y + slope.x * look.z + rings.y,
-            spread / square * (strength * strength * lattice * lattice),
+            slope.x * look.y - slope.y * look.z + rings.x + runs.z,
+            slope.y * look.y + slope.x * look.z + rings.y + runs.w,
+            mixed.z / square * (strength * strength * lattice * lattice),
         )
     }
 }
@@ -253,14 +289,14 @@ pub fn puddle_water_reflectance(in_air: Vec3) -> Vec3 {
 mod tests {
     use super::*;
     use crate::builder::SceneBuilder;
-    use crate::data::RenderFrame;
-    use crate::puddle::{Ground, PuddleLook, PuddleMap, PuddleRows, slope_levels};
+    use crate::data::{RenderFrame, SceneData};
+    use crate::puddle::{FlowMap, Ground, PuddleLook, PuddleMap, PuddleRows, slope_levels};
     use crate::sky_light::SkyLight;
+    use downpour_math::packing::packing_pack_half;
     use downpour_render::camera::Viewpoint;
 
-    /// The square of the slope, what is seen of it and what is not together, is the lattice's at any distance.
-    #[test]
-    fn mixing_pieces_keeps_the_variance_at_any_footprint() {
+    /// Water with a lattice of waves some centimeters long, at a time, s, that runs with a velocity, m/s; and the mean square of its slope.
+    fn rippled(velocity: [f32; 2], time_s: f64) -> (SceneData, f32) {
         let size = 256u16;
         let wave = |k: f32, x: u16, y: u16| ops::sin(k * (f32::from(x) + 0.6 * f32::from(y)));
         let finest: Vec<[f32; 4]> = (0..u32::from(size) * u32::from(size))
@@ -273,7 +309,10 @@ mod tests {
         let mean_square = finest.iter().map(|slope| slope[2]).sum::<f32>() / finest.len() as f32;
         let mut scene = SceneBuilder::new().build(&SkyLight::new(1, 1, &[[1.0; 3]]));
         let ground = Ground { middle: Vec3::ZERO, size: Vec2::splat(100.0), turn: 0.0, reach: 1.0 };
-        let map = PuddleMap { ground, size: [2, 2], cells: [[0.0, 0.0, 0.1, 1.0]; 4].into() };
+        let words = [packing_pack_half(velocity), 0];
+        let flow =
+            (velocity != [0.0; 2]).then(|| FlowMap([[words, words].concat().try_into().unwrap(); 2].into()));
+        let map = PuddleMap { ground, size: [2, 2], cells: [[0.0, 0.0, 0.1, 1.0]; 4].into(), flow };
         scene.set_puddles(&PuddleRows {
             puddles: &[(map, PuddleLook { angle: 0.5, ..PuddleLook::default() })],
             shape: (u32::from(size), 8, 5.0e-3),
@@ -281,22 +320,65 @@ mod tests {
             shift: Vec3::ZERO,
             rings: None,
             wakes: &[],
+            time_s,
         });
+        (scene, mean_square)
+    }
+
+    /// Ripples of some water at many places, m, seen with a footprint, m.
+    fn ripples(scene: &SceneData, footprint: f32, places: impl Iterator<Item = Vec3>) -> Vec<Vec3> {
         let view = Viewpoint { eye: Vec3::Y, forward: Vec3::NEG_Y, up: Vec3::X, fov_y: 1.0 };
-        let frame = RenderFrame::new(&scene, &view, [1, 1], 1, 0, 0).unwrap();
-        let view = SceneView { data: &scene, frame: &frame };
-        for footprint in [0.0, 0.03, 0.3, 5.0] {
-            let (mut shown, mut hidden) = (0.0, 0.0);
-            for k in 0..10_000u16 {
-                let position =
-                    Vec3::new(f32::from(k % 100), 0.0, f32::from(k / 100)) * 0.377 - Vec3::splat(18.0);
-                let ripple = view.puddle_water_ripple(0, position, footprint, 0.1, 1.0);
-                shown += (ripple.x * ripple.x + ripple.y * ripple.y) / 1.0e4;
-                hidden += ripple.z / 1.0e4;
+        let frame = RenderFrame::new(scene, &view, [1, 1], 1, 0, 0).unwrap();
+        let view = SceneView { data: scene, frame: &frame };
+        places.map(|position| view.puddle_water_ripple(0, position, footprint, 0.1, 1.0)).collect()
+    }
+
+    fn places() -> impl Iterator<Item = Vec3> {
+        (0..10_000u16)
+            .map(|k| Vec3::new(f32::from(k % 100), 0.0, f32::from(k / 100)) * 0.377 - Vec3::splat(18.0))
+    }
+
+    /// The square of the slope, what is seen of it and what is not together, is the lattice's at any distance, whether the water stands
+    /// or runs, slowly or fast, at any time.
+    #[test]
+    fn mixing_pieces_keeps_the_variance_at_any_footprint() {
+        for (velocity, time_s) in
+            [([0.0; 2], 0.0), ([0.01, 0.012], 3.3), ([0.4, -0.3], 3.2), ([0.4, -0.3], 3.33)]
+        {
+            let (scene, mean_square) = rippled(velocity, time_s);
+            for footprint in [0.0, 0.03, 0.3, 5.0] {
+                let (mut shown, mut hidden) = (0.0, 0.0);
+                for ripple in ripples(&scene, footprint, places()) {
+                    shown += (ripple.x * ripple.x + ripple.y * ripple.y) / 1.0e4;
+                    hidden += ripple.z / 1.0e4;
+                }
+                let ratio = (shown + hidden) / mean_square;
+                assert!(
+                    (ratio - 1.0).abs() < 0.08,
+                    "{velocity:?} {footprint}: {ratio} ({shown} and {hidden})"
+                );
+                assert_eq!(hidden > shown, footprint > 0.01, "{footprint}: {shown} and {hidden}");
             }
-            let ratio = (shown + hidden) / mean_square;
-            assert!((ratio - 1.0).abs() < 0.08, "{footprint}: {ratio} ({shown} and {hidden})");
-            assert_eq!(hidden > shown, footprint > 0.01, "{footprint}: {shown} and {hidden}");
+        }
+    }
+
+    /// Where the water has gone to, its ripples are; where they were are others.
+    #[test]
+    fn ripples_go_with_the_water() {
+        let (velocity, step_s) = (Vec2::new(1.0, -0.5), 0.04);
+        let correlation = |from: &[Vec3], to: &[Vec3]| {
+            let product =
+                |a: &[Vec3], b: &[Vec3]| a.iter().zip(b).map(|(a, b)| a.x * b.x + a.y * b.y).sum::<f32>();
+            product(from, to) / (product(from, from) * product(to, to)).sqrt()
+        };
+        let way = Vec3::new(velocity.x, 0.0, velocity.y) * step_s as f32;
+        for time_s in [0.0, 0.21, 0.38, 0.79, 5.3] {
+            let [before, after] =
+                [time_s, time_s + step_s].map(|time_s| rippled(velocity.to_array(), time_s).0);
+            let from = ripples(&before, 0.0, places());
+            let along = correlation(&from, &ripples(&after, 0.0, places().map(|place| place + way)));
+            let fixed = correlation(&from, &ripples(&after, 0.0, places()));
+            assert!(along > 0.97 && fixed < 0.8, "{time_s}: {along} {fixed}");
         }
     }
 }
