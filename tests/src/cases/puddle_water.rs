@@ -89,7 +89,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             "puddle_flow_place",
             &PUDDLE_FLOW,
             &[fraction, Below(1 << 20), Below(2)],
-            Tol::relative(1.0e-6, 1.0e-6, "a product"),
+            Tol::relative(1.0e-6, 1.0e-6, "products of whole numbers below 67 with constants"),
             |a| puddle_flow_place(a.f32(), a.u32(), a.u32()).to_array().words(),
         ),
         FunctionCase::new("puddle_water_mirrored", &PUDDLE_WATER, &[Unit3, Unit3], DIRECTION, |a| {
