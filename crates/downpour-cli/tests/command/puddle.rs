@@ -6,10 +6,12 @@ use crate::child::Downpour;
 use crate::clip::content;
 use crate::scene_files::{NO_SPLASHES, model, weather};
 
-/// The storm on uneven ground, with a painted puddle.
-fn flooded(arguments: &[&str]) -> Downpour {
-    let puddles = "[[puddle]]\nposition_m = [0, 0, 2]\nsize_m = [4, 3]\nrelief_mm = 5\ncell_mm = 40\n\
-                   [[puddle]]\nposition_m = [0, 0, -2]\nsize_m = [2, 1]\nmask = 'mask.png'\n";
+/// The storm on uneven ground, with a painted puddle; `key` is one of the other.
+fn flooded_with(key: &str, arguments: &[&str]) -> Downpour {
+    let puddles = format!(
+        "[[puddle]]\nposition_m = [0, 0, 2]\nsize_m = [4, 3]\nrelief_mm = 5\ncell_mm = 40\n{key}\n\
+         [[puddle]]\nposition_m = [0, 0, -2]\nsize_m = [2, 1]\nmask = 'mask.png'\n"
+    );
     let mut mask = std::io::Cursor::new(Vec::new());
     let white = image::GrayImage::from_pixel(4, 2, image::Luma([255]));
     white.write_to(&mut mask, image::ImageFormat::Png).unwrap();
@@ -19,14 +21,23 @@ fn flooded(arguments: &[&str]) -> Downpour {
         .with_file("mask.png", mask.into_inner())
 }
 
+fn flooded(arguments: &[&str]) -> Downpour {
+    flooded_with("", arguments)
+}
+
 #[test]
 fn check_tells_of_the_water() {
-    let listed = flooded(&["check", "storm.toml", "--json"]).run().succeeded().json();
+    let check = ["check", "storm.toml", "--json"];
+    let listed = flooded_with("running = false", &check).run().succeeded().json();
     let number = |key: &str| listed[key].as_f64().unwrap();
     assert_eq!(number("puddles"), 2.0);
     // 2 m^2 are painted, 12 mm deep; of the other 12 m^2 some are hollows.
     assert!((2.2..12.0).contains(&number("puddle_area_m2")), "{listed}");
     assert!(number("puddle_volume_l") > 24.0 && number("puddle_deepest_mm") >= 12.0, "{listed}");
+    // 400 mm/h run off level ground as a sheet of water.
+    let running = flooded(&check).run().succeeded().json();
+    let area = running["puddle_area_m2"].as_f64().unwrap();
+    assert!(area > number("puddle_area_m2") + 1.0 && area <= 14.0, "{running}");
 }
 
 /// Water changes the picture, ripples continue from frame to frame, and a resumed clip is the same.
