@@ -106,7 +106,7 @@ impl Ground {
                 });
             }
         }
-        let (covers, gullies) = Gully::plan(settings.seed, settings.length_m, half_road);
+        let (covers, gullies) = covers::plan(settings.seed, settings.length_m, half_road);
         Self {
             half_road,
             pavement: settings.pavement_m,
@@ -169,8 +169,7 @@ impl Ground {
     /// Unevenness along a gutter, meters: water stands in its low parts, and runs to the gullies.
     fn gutter_wave(&self, z: f32, side: u32) -> f32 {
         let wave = world(z, side as f32 * 31.0, 4.6, 2, 201 + side + self.seed) - 0.5;
-        let dips: f32 = self.gullies.iter().map(|gully| gully.dip(z, side)).sum();
-        wave * 0.03 * (0.6 + 0.8 * self.age) - dips
+        wave * 0.03 * (0.6 + 0.8 * self.age) - self.gutter_dip(z, side)
     }
 
     /// Height of the edge of the carriageway, at the gutter.

@@ -23,6 +23,11 @@ const BAR_M: f32 = 0.03;
 /// Depth of a shaft: what lies below all streets is deeper.
 const SHAFT_M: f32 = 0.24;
 
+/// Depth of a gutter's low part at a gully, distance along the gutter at which 1/e of it is left, and at which nothing is.
+const DIP_M: f32 = 0.02;
+const DIP_REACH_M: f32 = 0.8;
+const DIP_END_M: f32 = 6.0 * DIP_REACH_M;
+
 /// A gully in a gutter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Gully {
@@ -32,41 +37,49 @@ pub(super) struct Gully {
 }
 
 impl Gully {
-    /// Where the gullies and, before them, the manhole covers of a street are: x and z.
-    pub(super) fn plan(random: u64, length: f32, half_road: f32) -> (Vec<[f32; 2]>, Vec<Self>) {
-        let mut dice = Dice::new(random, 111);
-        let mut covers = Vec::new();
-        let mut z = -dice.range(4.0, 10.0);
-        while z > -length + 2.0 {
-            covers.push([dice.range(-0.5, 0.5) * half_road, z]);
-            z -= dice.range(11.0, 22.0);
-        }
-        let mut gullies = Vec::new();
-        for side in [-1.0, 1.0] {
-            let mut z = -dice.range(3.0, 9.0);
-            while z > -length + 3.0 {
-                gullies.push(Self { side, z });
-                z -= GULLIES_M;
-            }
-        }
-        (covers, gullies)
-    }
-
-    /// The part of the gutter on a side, 1 on the right, that it opens: from z to z.
-    pub(super) fn opening(&self, side: u32) -> Option<[f32; 2]> {
-        (side == u32::from(self.side > 0.0)).then_some([self.z - GULLY_HALF_M, self.z + GULLY_HALF_M])
-    }
-
-    /// How much the gutter on a side, 1 on the right, is lower at z, where water runs to the gully.
-    pub(super) fn dip(&self, z: f32, side: u32) -> f32 {
-        let away = (z - self.z) / DIP_REACH_M;
-        if side == u32::from(self.side > 0.0) { DIP_M * ops::exp(-away * away) } else { 0.0 }
+    /// Number of its gutter: 1 on the right.
+    fn gutter(&self) -> u32 {
+        u32::from(self.side > 0.0)
     }
 }
 
-/// Depth of a gutter's low part at a gully, and distance along the gutter at which 1/e of it is left.
-const DIP_M: f32 = 0.02;
-const DIP_REACH_M: f32 = 0.8;
+/// Where the manhole covers, x and z, and the gullies of a street are.
+pub(super) fn plan(random: u64, length: f32, half_road: f32) -> (Vec<[f32; 2]>, Vec<Gully>) {
+    let mut dice = Dice::new(random, 111);
+    let mut covers = Vec::new();
+    let mut z = -dice.range(4.0, 10.0);
+    while z > -length + 2.0 {
+        covers.push([dice.range(-0.5, 0.5) * half_road, z]);
+        z -= dice.range(11.0, 22.0);
+    }
+    let mut gullies = Vec::new();
+    for side in [-1.0, 1.0] {
+        let mut z = -dice.range(3.0, 9.0);
+        while z > -length + 3.0 {
+            gullies.push(Gully { side, z });
+            z -= GULLIES_M;
+        }
+    }
+    (covers, gullies)
+}
+
+impl Ground {
+    /// The parts of the gutter on a side, 1 on the right, that gullies open: from z to z.
+    pub(super) fn openings(&self, side: u32) -> Vec<[f32; 2]> {
+        let own = self.gullies.iter().filter(|gully| gully.gutter() == side);
+        own.map(|gully| [gully.z - GULLY_HALF_M, gully.z + GULLY_HALF_M]).collect()
+    }
+
+    /// How much the gutter on a side, 1 on the right, is lower at z, where water runs to a gully.
+    pub(super) fn gutter_dip(&self, z: f32, side: u32) -> f32 {
+        let is_near = |gully: &&Gully| gully.gutter() == side && (z - gully.z).abs() < DIP_END_M;
+        let dip = |gully: &Gully| {
+            let away = (z - gully.z) / DIP_REACH_M;
+            DIP_M * ops::exp(-away * away)
+        };
+        self.gullies.iter().filter(is_near).map(dip).sum()
+    }
+}
 
 pub(super) fn covers(ground: &Ground, mesh: &mut Mesh) {
     for &[x, z] in &ground.covers {
@@ -107,8 +120,7 @@ fn cover(ground: &Ground, mesh: &mut Mesh, x: f32, z: f32) {
 
 /// A grating over a shaft in the gutter, as low as the gutter is at the curb.
 fn grating(ground: &Ground, mesh: &mut Mesh, gully: &Gully) {
-    let side = u32::from(gully.side > 0.0);
-    let top = ground.gutter_wave(gully.z, side) + 0.002;
+    let top = ground.gutter_wave(gully.z, gully.gutter()) + 0.002;
     let road = top + ground.edge();
     let bars = tinted(Material::Iron, [0.28, 0.26, 0.24]);
     let wall = plain(Material::Soil);

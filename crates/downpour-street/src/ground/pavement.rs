@@ -145,7 +145,7 @@ fn sweep(ground: &Ground, mesh: &mut Mesh, line: &Line, mirror: f32, side: u32) 
     let stations = &line.stations;
     let columns = profile.len() - 1;
     let random = |stone: i32, n: u32| hash(stone, side as i32, 241 + n + ground.seed);
-    let openings: Vec<[f32; 2]> = ground.gullies.iter().filter_map(|gully| gully.opening(side)).collect();
+    let openings = ground.openings(side);
     // Mirrored, the columns run the other way, so that the front stays above.
     let column = |i: usize| if mirror > 0.0 { i } else { columns - i };
     mesh.grid(
@@ -215,7 +215,7 @@ pub(super) fn along(ground: &Ground, mesh: &mut Mesh, mirror: f32) {
     line.corner(far_center, radius, Vec2::X, Vec2::Y);
     line.straight(Vec2::new(far_center.x, far), Vec2::new(reach, far), Vec2::Y);
     let side = u32::from(mirror > 0.0);
-    for opening in ground.gullies.iter().filter_map(|gully| gully.opening(side)) {
+    for opening in ground.openings(side) {
         line.cut(opening);
     }
     sweep(ground, mesh, &line, mirror, side);

@@ -9,6 +9,8 @@
 //! In a street whose rain has been the same for longer than water takes to its gullies this is the whole state; of a rain that changes it
 //! takes the mean over [`Weather::runoff_rate`](downpour_weather::Weather::runoff_rate)'s time.
 
+use std::collections::BTreeSet;
+
 use downpour_math::ops;
 use glam::Vec2;
 
@@ -39,7 +41,7 @@ const MAX_UNEVEN_M: f32 = 1.0e-3;
 const MAX_SPEED: f32 = 3.0;
 
 /// Cells that a stream is wide, at least: the map does not show narrower ones.
-const MIN_STRIPS: u32 = 3;
+const MIN_STRIPS: usize = 3;
 
 /// Times that levels become means of those around them.
 const SMOOTHINGS: u32 = 3;
@@ -95,8 +97,6 @@ struct Section {
     discharge: f32,
     /// Largest depth, m.
     deepest: f32,
-    /// Number of cells across.
-    strips: u32,
 }
 
 /// What a hollow does to the water that comes to it.
@@ -162,6 +162,7 @@ impl Catchments<'_> {
         let mut way = vec![f32::NEG_INFINITY; count];
         let mut heads = vec![f32::NEG_INFINITY; states.len()];
         let mut sums = vec![Sum::default(); count];
+        let mut wet = Vec::new();
         let mut runs = false;
         for &cell in &self.drainage.order {
             let discharge = discharges[cell];
@@ -188,25 +189,25 @@ impl Catchments<'_> {
             };
             let level = cut.level;
             way[cell] = level;
-            let section = self.section(&cut, &discharges, |_| {});
-            if section.deepest < limits.least || section.strips < MIN_STRIPS {
+            let section = self.section(&cut, &discharges, &mut wet);
+            if section.deepest < limits.least || wet.len() < MIN_STRIPS {
                 continue;
             }
             runs = true;
             let velocity = along * (section.discharge / section.area).min(MAX_SPEED);
-            self.section(&cut, &discharges, |at| {
+            for &at in &wet {
                 sums[at] = sums[at] + Sum { level, velocity, count: 1.0 };
-            });
+            }
         }
         if !runs {
             return None;
         }
         self.close(&mut sums);
-        let of = |sum: &Sum| (sum.count > 0.0).then(|| (sum.level / sum.count, sum.velocity / sum.count));
-        let (mut levels, velocities): (Vec<Option<f32>>, Vec<Vec2>) = sums
-            .iter()
-            .map(|sum| of(sum).map_or((None, Vec2::ZERO), |(level, velocity)| (Some(level), velocity)))
-            .unzip();
+        let mean = |sum: &Sum| match sum.count {
+            0.0 => (None, Vec2::ZERO),
+            count => (Some(sum.level / count), sum.velocity / count),
+        };
+        let (mut levels, velocities): (Vec<Option<f32>>, Vec<Vec2>) = sums.iter().map(mean).unzip();
         self.raise(&heads, &mut levels);
         for _ in 0..SMOOTHINGS {
             levels = self.smoothed(&levels);
@@ -216,28 +217,30 @@ impl Catchments<'_> {
 
     /// Closes gaps between cross sections, which oblique ones leave, and leaves out what has no breadth.
     fn close(&self, sums: &mut [Sum]) {
-        let [columns, rows] = self.hollows.size;
-        for is_closing in [true, false] {
-            let before = sums.to_vec();
-            for (cell, sum) in sums.iter_mut().enumerate() {
-                let (x, y) = (cell % columns, cell / columns);
-                let (left, right) = (x.saturating_sub(1), (x + 1).min(columns - 1));
-                let (above, below) = (y.saturating_sub(1), (y + 1).min(rows - 1));
-                let around = (above..=below).flat_map(|y| (left..=right).map(move |x| y * columns + x));
-                let wet = around.filter(|&at| at != cell && before[at].count > 0.0);
-                let (all, count) =
-                    wet.fold((Sum::default(), 0), |(all, count), at| (all + before[at], count + 1));
-                if is_closing
-                    && sum.count == 0.0
-                    && count >= 4
-                    && self.hollows.ground[cell] < all.level / all.count
-                {
-                    *sum = all;
-                } else if !is_closing && count < 3 {
-                    *sum = Sum::default();
-                }
+        let before = sums.to_vec();
+        for cell in (0..sums.len()).filter(|&cell| before[cell].count == 0.0) {
+            let (all, count) = self.around(cell, &before);
+            if count >= 4 && self.hollows.ground[cell] < all.level / all.count {
+                sums[cell] = all;
             }
         }
+        let before = sums.to_vec();
+        for (cell, sum) in sums.iter_mut().enumerate() {
+            if self.around(cell, &before).1 < 3 {
+                *sum = Sum::default();
+            }
+        }
+    }
+
+    /// What runs in the eight cells around one, and in how many of them.
+    fn around(&self, cell: usize, sums: &[Sum]) -> (Sum, u32) {
+        let [columns, rows] = self.hollows.size;
+        let (x, y) = (cell % columns, cell / columns);
+        let (left, right) = (x.saturating_sub(1), (x + 1).min(columns - 1));
+        let (above, below) = (y.saturating_sub(1), (y + 1).min(rows - 1));
+        let around = (above..=below).flat_map(|y| (left..=right).map(move |x| y * columns + x));
+        let wet = around.filter(|&at| at != cell && sums[at].count > 0.0);
+        wet.fold((Sum::default(), 0), |(all, count), at| (all + sums[at], count + 1))
     }
 
     /// The hollow that a cell is in.
@@ -296,10 +299,11 @@ impl Catchments<'_> {
     fn normal_level(&self, cell: usize, along: Vec2, fall: f32, discharges: &[f32]) -> f32 {
         let ground = self.hollows.ground[cell];
         let (mut low, mut high) = (0.0, MAX_DEPTH_M);
+        let mut wet = Vec::new();
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
             let cut = Cut { cell, along, level: ground + middle, pool: None };
-            let section = self.section(&cut, discharges, |_| {});
+            let section = self.section(&cut, discharges, &mut wet);
             if section.conveyance * fall.sqrt() / MANNING_N < section.discharge {
                 low = middle;
             } else {
@@ -309,8 +313,9 @@ impl Catchments<'_> {
         ground + high
     }
 
-    /// The cross section of some water; `wet` gets the cells under it.
-    fn section(&self, cut: &Cut, discharges: &[f32], mut wet: impl FnMut(usize)) -> Section {
+    /// The cross section of some water; `wet` becomes the cells under it.
+    fn section(&self, cut: &Cut, discharges: &[f32], wet: &mut Vec<usize>) -> Section {
+        wet.clear();
         let Cut { cell, along, level, .. } = *cut;
         let step = self.cell_m.min_element();
         // Ways go from cell to cell: an oblique one has more cells.
@@ -322,8 +327,7 @@ impl Catchments<'_> {
             section.area += step * depth;
             section.discharge += discharges[at] * part;
             section.deepest = section.deepest.max(depth);
-            section.strips += 1;
-            wet(at);
+            wet.push(at);
         };
         strip(cell);
         for side in [-step, step] {
@@ -351,8 +355,9 @@ impl Catchments<'_> {
         let is_outside = |at: usize| cut.pool.is_some_and(|pool| self.basins.of_cell[at] as usize != pool);
         // Steps up to where no water runs.
         let mut runs = None;
-        for k in 1..=(MAX_HALF_WIDTH_M / across.length()) as u32 {
-            let Some(at) = self.beside(cut.cell, across, k) else { break };
+        let furthest = (MAX_HALF_WIDTH_M / across.length()) as u32;
+        for k in 1..=furthest {
+            let Some(at) = self.beside(cut.cell, across, k) else { return runs.unwrap_or(k - 1) };
             let depth = cut.level - self.hollows.ground[at];
             if depth <= 0.0 || is_outside(at) {
                 return k - 1;
@@ -366,27 +371,21 @@ impl Catchments<'_> {
             }
         }
         // No bank holds it.
-        runs.unwrap_or((MAX_HALF_WIDTH_M / across.length()) as u32)
+        runs.unwrap_or(furthest)
     }
 
     /// Raises the water in hollows to the level of what runs out of them, up to their new shores.
     fn raise(&self, heads: &[f32], levels: &mut [Option<f32>]) {
-        let mut ahead = Vec::new();
         for (basin, &head) in (0u32..).zip(heads).filter(|(_, head)| head.is_finite()) {
-            ahead.extend(self.basins.basins[basin as usize].cells().iter().map(|&cell| cell as usize));
-            let mut inside: Vec<usize> = ahead.clone();
-            let mut known: std::collections::BTreeSet<usize> = inside.iter().copied().collect();
+            let mut ahead: Vec<usize> =
+                self.basins.basins[basin as usize].cells().iter().map(|&cell| cell as usize).collect();
+            let mut known: BTreeSet<usize> = ahead.iter().copied().collect();
             while let Some(cell) = ahead.pop() {
-                for beside in neighbors(self.hollows.size, cell) {
-                    let is_shore = self.basins.of_cell[beside] == basin && self.hollows.ground[beside] < head;
-                    if is_shore && known.insert(beside) {
-                        inside.push(beside);
-                        ahead.push(beside);
-                    }
-                }
-            }
-            for cell in inside {
                 levels[cell] = levels[cell].map(|level| level.max(head)).or(Some(head));
+                let is_shore =
+                    |&at: &usize| self.basins.of_cell[at] == basin && self.hollows.ground[at] < head;
+                let shore = neighbors(self.hollows.size, cell).filter(is_shore);
+                ahead.extend(shore.filter(|&at| known.insert(at)));
             }
         }
     }
