@@ -1,15 +1,18 @@
 //! Reflection at a surface: GGX microfacets over a diffuse base, metallic-roughness.
 //!
 //! Sources: B. Walter et al., "Microfacet models for refraction through rough surfaces", EGSR 2007 (GGX); E. Heitz,
-//! JCGT 3(2), 2014 (height-correlated Smith); C. Schlick 1994; glTF 2.0 appendix B. The environment term is the fit
-//! of B. Karis, "Physically based shading on mobile", 2014.
+//! JCGT 3(2), 2014 (height-correlated Smith); C. Schlick 1994; glTF 2.0 appendix B; Fresnel's own law for
+//! water ([`optics`](downpour_drop::optics)). The environment term is the fit of B. Karis, "Physically based shading on
+//! mobile", 2014.
 //!
 //! Reflected rays are drawn by the normals that the viewer sees (E. Heitz, JCGT 7(4), 2018).
 //!
 //! Symbols: alpha = roughness^2; all cosines in [0, 1]. Twin of `shaders/wgsl/render/brdf.wgsl`.
 
+use downpour_drop::optics::optics_fresnel;
 use downpour_math::ops;
-use downpour_shaders::render::brdf::{BRDF_GRAZING, BRDF_MIN_DIVISOR};
+use downpour_shaders::render::brdf::{BRDF_GRAZING, BRDF_MIN_DIVISOR, BRDF_MIN_REFLECTANCE};
+use downpour_shaders::render::puddle_water::{PUDDLE_WATER_INDEX, PUDDLE_WATER_NORMAL};
 use glam::Vec3;
 
 /// Normal distribution times pi: D(h) pi, at a cosine to the normal.
@@ -29,13 +32,34 @@ pub fn brdf_visibility(alpha: f32, cosine_view: f32, cosine_light: f32) -> f32 {
     0.5 / (view + light).max(BRDF_MIN_DIVISOR)
 }
 
-/// Schlick's Fresnel for a reflectance at normal incidence.
+/// Rise of a reflectance from that at normal incidence (0) to that at grazing incidence (1), of a surface of which a film of
+/// water covers the fraction `film`: Fresnel's for water; where there is no film, Schlick's, whose index is not known.
+///
+/// Schlick's is 14 % above Fresnel's for water at 12 degrees over the surface, and 12 % below it at 36.
 #[must_use]
-pub fn brdf_fresnel(normal_reflectance: Vec3, cosine: f32) -> Vec3 {
-    let rest = 1.0 - cosine.clamp(0.0, 1.0);
+pub fn brdf_rise(film: f32, cosine: f32) -> f32 {
+    let c = cosine.clamp(0.0, 1.0);
+    let rest = 1.0 - c;
     let square = rest * rest;
     let fifth = square * square * rest;
-    normal_reflectance + (Vec3::ONE - normal_reflectance) * fifth
+    if film <= 0.0 {
+        return fifth;
+    }
+    let of_water =
+        (optics_fresnel(c, PUDDLE_WATER_INDEX) - PUDDLE_WATER_NORMAL) / (1.0 - PUDDLE_WATER_NORMAL);
+    fifth + (of_water - fifth) * film
+}
+
+/// Reflectance at grazing incidence: all light, but for what reflects nothing at normal incidence, which has no gloss.
+#[must_use]
+pub fn brdf_grazing(normal_reflectance: Vec3) -> Vec3 {
+    (normal_reflectance / BRDF_MIN_REFLECTANCE).min(Vec3::ONE)
+}
+
+/// Reflectance at a cosine, for that at normal incidence. `film`: fraction that a film of water covers.
+#[must_use]
+pub fn brdf_fresnel(normal_reflectance: Vec3, film: f32, cosine: f32) -> Vec3 {
+    normal_reflectance + (brdf_grazing(normal_reflectance) - normal_reflectance) * brdf_rise(film, cosine)
 }
 
 /// Radiance toward the viewer for light of irradiance pi from one direction, cosine at the surface included.
@@ -43,6 +67,7 @@ pub fn brdf_fresnel(normal_reflectance: Vec3, cosine: f32) -> Vec3 {
 pub fn brdf_direct(
     diffuse: Vec3,
     normal_reflectance: Vec3,
+    film: f32,
     alpha: f32,
     normal: Vec3,
     view: Vec3,
@@ -56,7 +81,7 @@ pub fn brdf_direct(
     let sum = view + light;
     let halfway = sum / sum.dot(sum).sqrt().max(BRDF_MIN_DIVISOR);
     let cosine_half = normal.dot(halfway).clamp(0.0, 1.0);
-    let fresnel = brdf_fresnel(normal_reflectance, view.dot(halfway));
+    let fresnel = brdf_fresnel(normal_reflectance, film, view.dot(halfway));
     let specular = brdf_distribution(alpha, cosine_half) * brdf_visibility(alpha, cosine_view, cosine_light);
     ((Vec3::ONE - fresnel) * diffuse + fresnel * specular) * cosine_light
 }
@@ -106,7 +131,7 @@ pub fn brdf_environment(normal_reflectance: Vec3, roughness: f32, cosine_view: f
     let scale = -1.04 * lift + r[2];
     let bias = 1.04 * lift + r[3];
     // The fit goes below 0 where almost nothing is reflected.
-    (normal_reflectance * scale + Vec3::splat(bias)).max(Vec3::ZERO)
+    (normal_reflectance * scale + brdf_grazing(normal_reflectance) * bias).max(Vec3::ZERO)
 }
 
 #[cfg(test)]
@@ -145,6 +170,7 @@ mod tests {
                         let radiance = brdf_direct(
                             Vec3::ZERO,
                             Vec3::ONE,
+                            0.0,
                             (roughness * roughness).max(0.05),
                             Vec3::Z,
                             view,
@@ -157,6 +183,38 @@ mod tests {
                 assert!(reflected < 1.03, "roughness {roughness}, cosine {cosine}: {reflected}");
             }
         }
+    }
+
+    /// Degrees, and the reflectance of water of index 1.333 by Fresnel's law (Born & Wolf 1.5.2) and by Schlick's.
+    const REFLECTANCES: [[f32; 3]; 6] = [
+        [0.0, 0.020373, 0.02037],
+        [40.0, 0.024502, 0.021057],
+        [53.12, 0.039129, 0.030384],
+        [65.0, 0.08712, 0.08323],
+        [80.0, 0.347917, 0.397844],
+        [89.0, 0.896276, 0.917448],
+    ];
+
+    #[test]
+    fn a_film_reflects_as_water_does() {
+        for [degrees, water, schlick] in REFLECTANCES {
+            let cosine = ops::cos(degrees.to_radians());
+            let of = |film| brdf_fresnel(Vec3::splat(PUDDLE_WATER_NORMAL), film, cosine).x;
+            assert!((of(1.0) - water).abs() < 5.0e-6, "{degrees}: {} of {water}", of(1.0));
+            assert!((of(0.0) - schlick).abs() < 5.0e-6, "{degrees}: {} of {schlick}", of(0.0));
+            assert!((of(0.5) - 0.5 * (water + schlick)).abs() < 5.0e-6, "{degrees}");
+        }
+    }
+
+    #[test]
+    fn what_has_no_gloss_has_none_at_grazing_incidence() {
+        for film in [0.0, 1.0] {
+            for cosine in [0.0, 0.1, 1.0] {
+                assert_eq!(brdf_fresnel(Vec3::ZERO, film, cosine), Vec3::ZERO);
+            }
+        }
+        assert_eq!(brdf_environment(Vec3::ZERO, 0.2, 0.05), Vec3::ZERO);
+        assert_eq!(brdf_fresnel(Vec3::splat(0.04), 0.0, 0.0), Vec3::ONE);
     }
 
     #[test]

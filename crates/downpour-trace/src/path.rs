@@ -19,7 +19,8 @@
 //! Surfaces that shine are lights ([`emitter`](crate::emitter)): rays see them in a gloss only, and the glass of a lamp in a sharp one
 //! only, so that each is counted once.
 //!
-//! Limits: what a diffuse base finds reflects diffusely (no caustics); rays that look for light do not see the water of puddles.
+//! Limits: what a diffuse base finds reflects diffusely, by as much as its gloss and its base do (no caustics); rays that look
+//! for light do not see the water of puddles.
 
 mod draw;
 mod plan;
@@ -57,7 +58,7 @@ pub use downpour_render::path_lattice::{path_lattice_numbers, path_lattice_words
 use draw::{path_onward, path_replaced, path_water_fraction, path_water_ray};
 pub(crate) use plan::path_max;
 use plan::{
-    PathPlan, path_albedo, path_ambient, path_cover, path_matte, path_open, path_secondary, path_submerged,
+    PathPlan, path_albedo, path_ambient, path_cover, path_matte, path_open, path_submerged,
     path_water_surface,
 };
 
@@ -475,7 +476,7 @@ impl SceneView<'_> {
                         }
                         PathLeave::Mirror => {
                             let cosine = at.normal.dot(view).max(0.0);
-                            next.mirror = ray.mirror * brdf_fresnel(at.normal_reflectance, cosine);
+                            next.mirror = ray.mirror * brdf_fresnel(at.normal_reflectance, at.film, cosine);
                             next.width += ray.width;
                             ray = next;
                             followed = followed.max(at.roughness);
@@ -501,7 +502,7 @@ impl SceneView<'_> {
                         found = wet_surface(&found, wetness, ray.along, &relief);
                     }
                 }
-                let mut found = path_secondary(&found, ray.roughness);
+                let mut found = self.path_secondary(&found, ray.along, ray.roughness);
                 let mut seen_from = -ray.along;
                 if translucent_is(&found) {
                     let facet = found.facet;
@@ -548,7 +549,7 @@ impl SceneView<'_> {
                     leaves = PathLeave::Mirror;
                     if path_max(path_albedo(&found)) > 0.0 || found.roughness >= PATH_SECONDARY_ROUGHNESS {
                         leaves = PathLeave::Shown;
-                        found = path_secondary(&found, 1.0);
+                        found = self.path_secondary(&found, ray.along, 1.0);
                         light.factor = ray.mirror * (path_albedo(&found) + found.normal_reflectance * 0.5);
                         light.distance = hit.distance;
                         light.normal = found.normal;
@@ -657,7 +658,7 @@ impl SceneView<'_> {
             }
         }
         if plan.mirrors + plan.rays == 0 && !plan.spared {
-            base = self.data.translucent_sky(&surface) + glow;
+            base = self.data.translucent_sky(&surface) * (Vec3::ONE - plan.gloss) + glow;
             mirror = in_mirror();
         } else if plan.mirrors == 0 && plan.chance == 0.0 && !(plan.spared && plan.kept) {
             // Too faint to trace rays for it.

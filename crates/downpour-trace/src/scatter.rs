@@ -78,7 +78,7 @@ pub fn scatter_alpha(roughness: f32) -> f32 {
 #[must_use]
 pub fn scatter_gloss(normal_reflectance: Vec3, roughness: f32, cosine: f32, sharp: bool) -> Vec3 {
     if sharp {
-        return brdf_fresnel(normal_reflectance, cosine);
+        return brdf_fresnel(normal_reflectance, 0.0, cosine);
     }
     brdf_environment(normal_reflectance, roughness, cosine)
 }
@@ -123,7 +123,7 @@ pub(crate) fn scatter_draw(
     let sum = view + along;
     let half = sum / sum.dot(sum).sqrt().max(SCATTER_MIN_DIVISOR);
     let cosine_half = normal.dot(half).clamp(0.0, 1.0);
-    let fresnel = brdf_fresnel(surface.normal_reflectance, view.dot(half));
+    let fresnel = brdf_fresnel(surface.normal_reflectance, surface.film, view.dot(half));
     // All densities times pi.
     let glossy = brdf_visible_density(alpha, cosine_half, cosine_view);
     let density = (glossy * chance + cosine * (1.0 - chance)).max(SCATTER_MIN_DIVISOR);

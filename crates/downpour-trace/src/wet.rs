@@ -10,7 +10,8 @@
 //!    in any case, where its own medium ends.
 //! 4. Under the film the base lies behind an interface of water: what the coat reflects, in the mean over its microfacets, is taken
 //!    from what goes in and from what comes out, over the mean of both, so that white stays white. The coat is in the place of
-//!    the surface's own gloss, of which 0.3 % are left under water. A metal keeps its lobe.
+//!    the surface's own gloss, of which 0.3 % are left under water, and reflects as Fresnel's law has it of water. A metal keeps its
+//!    lobe.
 //! 5. The film follows the grains: noise of 3, 10 and 31 mm tilts it and makes it patchy. What a footprint does not resolve of the
 //!    slopes makes the coat rougher (M. Olano and D. Baker, LEAN Mapping, 2010), so that nothing flickers far away; so does what it does not
 //!    resolve of the surface's own relief.
@@ -36,7 +37,7 @@ use downpour_shaders::render::wet::{
 use downpour_weather::{Rain, Weather, WetnessAt};
 use glam::{DVec3, IVec3, Vec2, Vec3, Vec4};
 
-use crate::brdf::{brdf_masking, brdf_visibility, brdf_visible_normal};
+use crate::brdf::{brdf_masking, brdf_rise, brdf_visibility, brdf_visible_normal};
 use crate::data::SceneData;
 use crate::scatter::scatter_alpha;
 use crate::scene::SceneView;
@@ -388,7 +389,7 @@ fn coat_of(step: u16) -> Vec<[u32; 4]> {
     rows
 }
 
-/// Parts of the reflectance of an even environment: by the normals that a viewer sees, as rays are drawn.
+/// Parts of the reflectance of an even environment under a film: by the normals that a viewer sees, as rays are drawn.
 fn coat_parts(alpha: f32, cosine: f32) -> Vec2 {
     let view = Vec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
     let mut sum = Vec2::ZERO;
@@ -402,9 +403,8 @@ fn coat_parts(alpha: f32, cosine: f32) -> Vec2 {
             }
             let seen = brdf_visibility(alpha, cosine, along.z) * along.z * 4.0 * cosine
                 / brdf_masking(alpha, cosine).max(1.0e-6);
-            let rest = 1.0 - view.dot(half).clamp(0.0, 1.0);
-            let fifth = rest * rest * rest * rest * rest;
-            sum += Vec2::new(1.0 - fifth, fifth) * seen;
+            let rise = brdf_rise(1.0, view.dot(half));
+            sum += Vec2::new(1.0 - rise, rise) * seen;
         }
     }
     sum / (f32::from(COAT_RAYS) * f32::from(COAT_RAYS))

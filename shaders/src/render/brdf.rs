@@ -1,6 +1,8 @@
 //! `wgsl/render/brdf.wgsl`. Twin: `downpour_trace::brdf`.
 
+use super::puddle_water::PUDDLE_WATER_CONSTANTS;
 use crate::Module;
+use crate::drop::optics::OPTICS;
 
 /// Every module of this file.
 pub const MODULES: &[&Module] = &[&BRDF_CONSTANTS, &BRDF];
@@ -12,6 +14,8 @@ shared_constants! {
         BRDF_MIN_DIVISOR: f32 = 1.0e-7;
         /// The least cosine to the viewer: interpolated normals may face away.
         BRDF_GRAZING: f32 = 1.0e-3;
+        /// Reflectance at normal incidence from which a surface reflects all light at grazing incidence.
+        BRDF_MIN_REFLECTANCE: f32 = 1.0e-3;
     }
 }
 
@@ -19,5 +23,5 @@ shared_constants! {
 pub static BRDF: Module = Module {
     path: "render/brdf.wgsl",
     wgsl: include_str!("../../wgsl/render/brdf.wgsl"),
-    uses: &[&BRDF_CONSTANTS],
+    uses: &[&BRDF_CONSTANTS, &PUDDLE_WATER_CONSTANTS, &OPTICS],
 };

@@ -74,8 +74,6 @@ shared_constants! {
         PATH_ONWARD: u32 = 4;
         /// Path roughness from which surfaces are shaded in simplified form: as diffuse, with one lamp for all.
         PATH_SECONDARY_ROUGHNESS: f32 = 0.25;
-        /// Maximum specular reflectance in that simplified form.
-        PATH_SECONDARY_MAX_SPECULAR: f32 = 0.05;
         /// Minimum occlusion of a material that is taken back from light of lamps.
         PATH_OCCLUSION: f32 = 0.05;
         /// Makes other numbers of those of a ray.

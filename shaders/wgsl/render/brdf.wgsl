@@ -1,7 +1,7 @@
 // Reflection at a surface: GGX microfacets over a diffuse base, metallic-roughness.
 // Sources: B. Walter et al., "Microfacet models for refraction through rough surfaces", EGSR 2007 (GGX); E. Heitz,
-// JCGT 3(2), 2014 (height-correlated Smith); C. Schlick 1994; glTF 2.0 appendix B. The environment term is the fit of
-// B. Karis, "Physically based shading on mobile", 2014.
+// JCGT 3(2), 2014 (height-correlated Smith); C. Schlick 1994; glTF 2.0 appendix B; Fresnel's own law for water (optics). The
+// environment term is the fit of B. Karis, "Physically based shading on mobile", 2014.
 // Reflected rays are drawn by the normals that the viewer sees (E. Heitz, JCGT 7(4), 2018).
 // Symbols: alpha = roughness^2; all cosines in [0, 1].
 // Twin: downpour_trace::brdf.
@@ -21,17 +21,33 @@ fn brdf_visibility(alpha: f32, cosine_view: f32, cosine_light: f32) -> f32 {
     return 0.5 / max(view + light, BRDF_MIN_DIVISOR);
 }
 
-// Schlick's Fresnel for a reflectance at normal incidence.
-fn brdf_fresnel(normal_reflectance: vec3f, cosine: f32) -> vec3f {
-    let rest = 1.0 - clamp(cosine, 0.0, 1.0);
+// Rise of a reflectance from that at normal incidence (0) to that at grazing incidence (1), of a surface of which a film of
+// water covers the fraction `film`: Fresnel's for water; where there is no film, Schlick's, whose index is not known.
+fn brdf_rise(film: f32, cosine: f32) -> f32 {
+    let c = clamp(cosine, 0.0, 1.0);
+    let rest = 1.0 - c;
     let square = rest * rest;
     let fifth = square * square * rest;
-    return normal_reflectance + (vec3f(1.0) - normal_reflectance) * fifth;
+    if film <= 0.0 {
+        return fifth;
+    }
+    let of_water = (optics_fresnel(c, PUDDLE_WATER_INDEX) - PUDDLE_WATER_NORMAL) / (1.0 - PUDDLE_WATER_NORMAL);
+    return fifth + (of_water - fifth) * film;
+}
+
+// Reflectance at grazing incidence: all light, but for what reflects nothing at normal incidence, which has no gloss.
+fn brdf_grazing(normal_reflectance: vec3f) -> vec3f {
+    return min(normal_reflectance / BRDF_MIN_REFLECTANCE, vec3f(1.0));
+}
+
+// Reflectance at a cosine, for that at normal incidence. `film`: fraction that a film of water covers.
+fn brdf_fresnel(normal_reflectance: vec3f, film: f32, cosine: f32) -> vec3f {
+    return normal_reflectance + (brdf_grazing(normal_reflectance) - normal_reflectance) * brdf_rise(film, cosine);
 }
 
 // Radiance toward the viewer for light of irradiance pi from one direction, cosine at the surface included.
 fn brdf_direct(
-    diffuse: vec3f, normal_reflectance: vec3f, alpha: f32,
+    diffuse: vec3f, normal_reflectance: vec3f, film: f32, alpha: f32,
     normal: vec3f, view: vec3f, light: vec3f,
 ) -> vec3f {
     let cosine_light = dot(normal, light);
@@ -42,7 +58,7 @@ fn brdf_direct(
     let sum = view + light;
     let halfway = sum / max(sqrt(dot(sum, sum)), BRDF_MIN_DIVISOR);
     let cosine_half = clamp(dot(normal, halfway), 0.0, 1.0);
-    let fresnel = brdf_fresnel(normal_reflectance, dot(view, halfway));
+    let fresnel = brdf_fresnel(normal_reflectance, film, dot(view, halfway));
     let specular = brdf_distribution(alpha, cosine_half) * brdf_visibility(alpha, cosine_view, cosine_light);
     return ((vec3f(1.0) - fresnel) * diffuse + fresnel * specular) * cosine_light;
 }
@@ -90,5 +106,5 @@ fn brdf_environment(normal_reflectance: vec3f, roughness: f32, cosine_view: f32)
     let scale = -1.04 * lift + r.z;
     let bias = 1.04 * lift + r.w;
     // The fit goes below 0 where almost nothing is reflected.
-    return max(normal_reflectance * scale + vec3f(bias), vec3f(0.0));
+    return max(normal_reflectance * scale + brdf_grazing(normal_reflectance) * bias, vec3f(0.0));
 }

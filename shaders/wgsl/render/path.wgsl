@@ -189,12 +189,10 @@ fn path_plan(surface: Surface, view: vec3f, footprint: f32, told: bool, free: bo
     let kept = drawn && surface.roughness * surface.roughness >= spread * PATH_APART;
     let fraction = select(1.0 / f32(max(rays, 1u)), render_frame.ray_fraction, told);
     var plan = PathPlan(body, 0u, gloss, rays, 0.0, fraction, drawn, kept, false, spread, false);
-    if rays == 0u {
-        plan.body = body * (vec3f(1.0) - gloss);
-    } else if path_max(body) <= 0.0 {
+    if rays > 0u && path_max(body) <= 0.0 {
         plan.rays = 0u;
         plan.mirrors = select(1u, rays, drawn);
-    } else if surface.roughness < PATH_MIXED {
+    } else if rays > 0u && surface.roughness < PATH_MIXED {
         plan.mirrors = select(0u, 1u, path_max(gloss) > PATH_MIN_GLOSS);
     } else if kept {
         plan.chance = scatter_chance(body, gloss);
@@ -258,15 +256,16 @@ fn path_submerged(surface: Surface, clear: f32, scattering_albedo: vec3f) -> Sur
     return wet;
 }
 
-// A surface as it looks to rays that are not a mirror's: rough, and what a metal reflects, it reflects diffusely.
-fn path_secondary(surface: Surface, roughness: f32) -> Surface {
+// A surface as it looks along a direction to rays that are not a mirror's: what its gloss reflects, it reflects diffusely.
+fn path_secondary(surface: Surface, towards: vec3f, roughness: f32) -> Surface {
     var seen = surface;
     if roughness >= PATH_SECONDARY_ROUGHNESS {
-        let gloss = min(surface.normal_reflectance, vec3f(PATH_SECONDARY_MAX_SPECULAR));
-        seen.diffuse = surface.diffuse + surface.normal_reflectance - gloss;
-        seen.normal_reflectance = gloss;
-        seen.roughness = 1.0;
-        seen.film = 0.0;
+        var open = surface;
+        // Of that there is less in gaps, as of what is diffuse.
+        open.occlusion = 1.0;
+        let gloss = path_gloss(open, max(-dot(surface.normal, towards), 0.0));
+        seen = path_matte(surface, gloss);
+        seen.diffuse += gloss;
     }
     return seen;
 }
@@ -444,7 +443,7 @@ fn path_show(
         }
     }
     if plan.mirrors + plan.rays == 0u && !plan.spared {
-        base = translucent_sky(surface) + meeting.glow;
+        base = translucent_sky(surface) * (vec3f(1.0) - plan.gloss) + meeting.glow;
         mirror = sky_cone(mirrored, scatter_mirror(surface, -towards).width);
     } else if plan.mirrors == 0u && plan.chance == 0.0 && !(plan.spared && plan.kept) {
         // Too faint to trace rays for it.
@@ -549,7 +548,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                         ray.width += cone + meeting.plan.spread;
                         followed = at.roughness;
                     } else if leaves == PATH_MIRROR {
-                        next.mirror = ray.mirror * brdf_fresnel(at.normal_reflectance, max(dot(at.normal, view), 0.0));
+                        next.mirror = ray.mirror * brdf_fresnel(at.normal_reflectance, at.film, max(dot(at.normal, view), 0.0));
                         next.width += ray.width;
                         ray = next;
                         followed = max(followed, at.roughness);
@@ -655,7 +654,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     near = hit.distance + render_frame.nearest;
                     meeting.told = path.base.slack == 0.0 && path_cover(found) == 1.0 && found.transmission == 0.0;
                 } else {
-                    found = path_secondary(found, ray.roughness);
+                    found = path_secondary(found, ray.along, ray.roughness);
                     if translucent_is(found) {
                         let facet = found.facet;
                         found = translucent_drawn(found, fract(numbers.w * TRANSLUCENT_SIDE));
@@ -740,7 +739,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     leaves = PATH_MIRROR;
                     if path_max(path_albedo(found)) > 0.0 || found.roughness >= PATH_SECONDARY_ROUGHNESS {
                         leaves = PATH_SHOWN;
-                        found = path_secondary(found, 1.0);
+                        found = path_secondary(found, ray.along, 1.0);
                         light.factor = ray.mirror * (path_albedo(found) + found.normal_reflectance * 0.5);
                         light.distance = hit.distance;
                         light.normal = found.normal;

@@ -46,7 +46,7 @@ fn scatter_alpha(roughness: f32) -> f32 {
 // Fraction of a uniform environment that the gloss of a surface shows. `sharp`: of a mirror.
 fn scatter_gloss(normal_reflectance: vec3f, roughness: f32, cosine: f32, sharp: bool) -> vec3f {
     if sharp {
-        return brdf_fresnel(normal_reflectance, cosine);
+        return brdf_fresnel(normal_reflectance, 0.0, cosine);
     }
     return brdf_environment(normal_reflectance, roughness, cosine);
 }
@@ -83,7 +83,7 @@ fn scatter_draw(
     let sum = view + along;
     let halfway = sum / max(sqrt(dot(sum, sum)), SCATTER_MIN_DIVISOR);
     let cosine_half = clamp(dot(normal, halfway), 0.0, 1.0);
-    let fresnel = brdf_fresnel(surface.normal_reflectance, dot(view, halfway));
+    let fresnel = brdf_fresnel(surface.normal_reflectance, surface.film, dot(view, halfway));
     // All densities times pi.
     let glossy = brdf_visible_density(alpha, cosine_half, cosine_view);
     let density = max(glossy * chance + cosine * (1.0 - chance), SCATTER_MIN_DIVISOR);

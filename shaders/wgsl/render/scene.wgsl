@@ -135,7 +135,7 @@ fn scene_lamp(surface: Surface, view: vec3f, light: SceneArrival, out: vec3f, se
         base *= 1.0 - surface.film;
     }
     return light.irradiance * (under + brdf_direct(
-        base, surface.normal_reflectance, alpha, surface.normal, view, light.direction,
+        base, surface.normal_reflectance, surface.film, alpha, surface.normal, view, light.direction,
     ));
 }
 
@@ -181,7 +181,7 @@ fn scene_glow(surface: Surface, view: vec3f, light: SceneArrival, out: vec3f) ->
     }
     let sum = view + light.direction;
     let halfway = sum / max(sqrt(dot(sum, sum)), BRDF_MIN_DIVISOR);
-    let fresnel = brdf_fresnel(surface.normal_reflectance, clamp(dot(view, halfway), 0.0, 1.0));
+    let fresnel = brdf_fresnel(surface.normal_reflectance, surface.film, clamp(dot(view, halfway), 0.0, 1.0));
     var enters = vec3f(1.0) - fresnel;
     if WET_SURFACES && surface.film > 0.0 {
         enters += (out * wet_in(surface, cosine) - enters) * surface.film;

@@ -13,8 +13,8 @@ use downpour_shaders::render::scene::{
     SPACING, SURFACE, TEXTURE, TRACE_KERNEL, TRACE_SAMPLE_KERNEL,
 };
 use downpour_trace::brdf::{
-    brdf_direct, brdf_distribution, brdf_environment, brdf_fresnel, brdf_masking, brdf_visibility,
-    brdf_visible_density, brdf_visible_normal,
+    brdf_direct, brdf_distribution, brdf_environment, brdf_fresnel, brdf_grazing, brdf_masking, brdf_rise,
+    brdf_visibility, brdf_visible_density, brdf_visible_normal,
 };
 use downpour_trace::builder::{MeshPart, SceneBuilder};
 use downpour_trace::data::{RenderFrame, SceneData};
@@ -67,20 +67,41 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new("brdf_visibility", &BRDF, &[alpha, cosine, cosine], FORMULA, |a| {
             brdf_visibility(a.f32(), a.f32(), a.f32()).words()
         }),
-        FunctionCase::new("brdf_fresnel", &BRDF, &[r, g, b, Uniform(-0.2, 1.2)], FORMULA, |a| {
-            brdf_fresnel(vec3(a), a.f32()).to_array().words()
-        }),
+        FunctionCase::new(
+            "brdf_rise",
+            &BRDF,
+            &[Uniform(-0.5, 1.0), Uniform(-0.2, 1.2)],
+            Tol::absolute(
+                2.0e-6,
+                "Fresnel's law is a sum of squares of quotients (2.5 ulp), less a constant that cancels near 0",
+            ),
+            |a| brdf_rise(a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "brdf_grazing",
+            &BRDF,
+            &[Uniform(0.0, 2.0e-3), Uniform(0.0, 2.0e-3), b],
+            FORMULA,
+            |a| brdf_grazing(vec3(a)).to_array().words(),
+        ),
+        FunctionCase::new(
+            "brdf_fresnel",
+            &BRDF,
+            &[r, g, b, Uniform(-0.5, 1.0), Uniform(-0.2, 1.2)],
+            Tol::relative(2.0e-5, 2.0e-6, "the rise above, in sums and products"),
+            |a| brdf_fresnel(vec3(a), a.f32(), a.f32()).to_array().words(),
+        ),
         FunctionCase::new(
             "brdf_direct",
             &BRDF,
-            &[r, g, b, r, g, b, Uniform(0.2, 1.0), Unit3, Unit3, Unit3],
+            &[r, g, b, r, g, b, Uniform(-0.5, 1.0), Uniform(0.2, 1.0), Unit3, Unit3, Unit3],
             Tol::relative(
                 1.0e-3,
                 1.0e-4,
                 "the distribution above, and a half vector that cancels for opposite directions",
             )
             .with_outliers(1.0e-3),
-            |a| brdf_direct(vec3(a), vec3(a), a.f32(), vec3(a), vec3(a), vec3(a)).to_array().words(),
+            |a| brdf_direct(vec3(a), vec3(a), a.f32(), a.f32(), vec3(a), vec3(a), vec3(a)).to_array().words(),
         ),
         FunctionCase::new(
             "brdf_environment",

@@ -1,8 +1,7 @@
 //! Surfaces as rays take them, and the rays that look for their light.
 
 use downpour_shaders::render::path::{
-    PATH_APART, PATH_ENCLOSED, PATH_MIN_GLOSS, PATH_MIXED, PATH_SECONDARY_MAX_SPECULAR,
-    PATH_SECONDARY_ROUGHNESS, PATH_SHARP,
+    PATH_APART, PATH_ENCLOSED, PATH_MIN_GLOSS, PATH_MIXED, PATH_SECONDARY_ROUGHNESS, PATH_SHARP,
 };
 use downpour_shaders::render::puddle_water::PUDDLE_WATER_NORMAL;
 use downpour_shaders::render::scene::SCENE_BLENDED;
@@ -126,21 +125,6 @@ pub(super) fn path_submerged(surface: &Surface, clear: f32, scattering_albedo: V
     }
 }
 
-/// A surface as it looks to rays that are not a mirror's: rough, and what a metal reflects, it reflects diffusely.
-pub(super) fn path_secondary(surface: &Surface, roughness: f32) -> Surface {
-    if roughness < PATH_SECONDARY_ROUGHNESS {
-        return *surface;
-    }
-    let gloss = surface.normal_reflectance.min(Vec3::splat(PATH_SECONDARY_MAX_SPECULAR));
-    Surface {
-        diffuse: surface.diffuse + surface.normal_reflectance - gloss,
-        normal_reflectance: gloss,
-        roughness: 1.0,
-        film: 0.0,
-        ..*surface
-    }
-}
-
 /// A surface without its gloss, which is shown otherwise.
 pub(super) fn path_matte(surface: &Surface, gloss: Vec3) -> Surface {
     Surface {
@@ -165,6 +149,18 @@ impl SceneView<'_> {
             gloss += (coat - gloss) * surface.film;
         }
         gloss
+    }
+
+    /// A surface as it looks along a direction to rays that are not a mirror's: what its gloss reflects, it reflects diffusely.
+    pub(super) fn path_secondary(&self, surface: &Surface, towards: Vec3, roughness: f32) -> Surface {
+        if roughness < PATH_SECONDARY_ROUGHNESS {
+            return *surface;
+        }
+        // Of that there is less in gaps, as of what is diffuse.
+        let open = Surface { occlusion: 1.0, ..*surface };
+        let gloss = self.path_gloss(&open, (-surface.normal.dot(towards)).max(0.0));
+        let matte = path_matte(surface, gloss);
+        Surface { diffuse: matte.diffuse + gloss, ..matte }
     }
 
     /// The rays of a surface that shows itself to a viewer, to whom a pixel is `footprint` wide there. `told`: means over
@@ -200,12 +196,10 @@ impl SceneView<'_> {
             spread,
             spared: false,
         };
-        if rays == 0 {
-            plan.body = body * (Vec3::ONE - gloss);
-        } else if path_max(body) <= 0.0 {
+        if rays > 0 && path_max(body) <= 0.0 {
             plan.rays = 0;
             plan.mirrors = if drawn { rays } else { 1 };
-        } else if surface.roughness < PATH_MIXED {
+        } else if rays > 0 && surface.roughness < PATH_MIXED {
             plan.mirrors = u32::from(path_max(gloss) > PATH_MIN_GLOSS);
         } else if kept {
             plan.chance = scatter_chance(body, gloss);
@@ -220,4 +214,48 @@ impl SceneView<'_> {
 pub(super) fn path_ambient(surface: &Surface, given: Vec3) -> Vec3 {
     let albedo = (surface.diffuse + surface.normal_reflectance).min(Vec3::ONE);
     given * PATH_ENCLOSED / (Vec3::ONE - albedo * PATH_ENCLOSED)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::builder::SceneBuilder;
+    use crate::data::RenderFrame;
+    use crate::sky_light::SkyLight;
+    use downpour_render::camera::Viewpoint;
+
+    /// What surfaces that rays meet give back of even light: no more than falls on a white one, and of a black base the mean over
+    /// the hemisphere of Schlick's reflectance, r + (1 - r) / 21, whatever it is that reflects.
+    #[test]
+    fn surfaces_that_rays_meet_keep_the_light_of_their_gloss() {
+        let scene = SceneBuilder::new().build(&SkyLight::new(1, 1, &[[1.0; 3]]));
+        let view = Viewpoint { eye: Vec3::Y, forward: Vec3::NEG_Y, up: Vec3::X, fov_y: 1.0 };
+        let frame = RenderFrame::new(&scene, &view, [1, 1], 1, 0, 0).unwrap();
+        let view = SceneView { data: &scene, frame: &frame };
+        // The surface of water is one without a base.
+        let polished = path_water_surface(Vec3::Y, Vec3::NEG_Y, 1.0, Vec3::ZERO);
+        for normal_reflectance in [Vec3::ZERO, Vec3::splat(0.04), Vec3::new(0.9, 0.6, 0.3)] {
+            for roughness in [0.0, 0.3, 1.0] {
+                let black = Surface { normal_reflectance, roughness, ..polished };
+                let white = Surface { diffuse: Vec3::ONE, ..black };
+                let mut mean = Vec3::ZERO;
+                for k in 0..1000u16 {
+                    // Cosine-weighted.
+                    let cosine = ((f32::from(k) + 0.5) / 1000.0).sqrt();
+                    let towards = Vec3::new((1.0 - cosine * cosine).sqrt(), -cosine, 0.0);
+                    let seen = view.path_secondary(&white, towards, 1.0);
+                    assert!((seen.diffuse - Vec3::ONE).abs().max_element() < 1.0e-6);
+                    mean += view.path_secondary(&black, towards, 1.0).diffuse * 1.0e-3;
+                }
+                if normal_reflectance == Vec3::ZERO {
+                    assert_eq!(mean, Vec3::ZERO);
+                } else if roughness == 0.0 {
+                    let exact = normal_reflectance + (Vec3::ONE - normal_reflectance) / 21.0;
+                    assert!((mean - exact).abs().max_element() < 1.0e-3, "{mean} of {exact}");
+                }
+            }
+        }
+        let mirrored = view.path_secondary(&polished, Vec3::NEG_Y, 0.0);
+        assert_eq!(mirrored.normal_reflectance, polished.normal_reflectance);
+    }
 }

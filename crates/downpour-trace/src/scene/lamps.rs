@@ -178,15 +178,15 @@ impl SceneView<'_> {
             return surface.diffuse * self.scene_glow(surface, view, light, out);
         }
         let alpha = scene_alpha(surface.roughness, light.spread, surface.normal.dot(view));
-        let (diffuse, normal_reflectance) = (surface.diffuse * light.diffuse, surface.normal_reflectance);
-        let (mut base, mut under) = (diffuse, Vec3::ZERO);
+        let (mut base, mut under) = (surface.diffuse * light.diffuse, Vec3::ZERO);
         if surface.film > 0.0 {
             let cosine = surface.normal.dot(light.direction).max(0.0);
             under = base * out * self.data.wet_in(surface, cosine) * (surface.film * cosine);
             base *= 1.0 - surface.film;
         }
+        let &Surface { normal_reflectance, film, normal, .. } = surface;
         light.irradiance
-            * (under + brdf_direct(base, normal_reflectance, alpha, surface.normal, view, light.direction))
+            * (under + brdf_direct(base, normal_reflectance, film, alpha, normal, view, light.direction))
     }
 
     /// Radiance of the disks of suns that the picture shows in a direction.
@@ -215,7 +215,8 @@ impl SceneView<'_> {
         }
         let sum = view + light.direction;
         let halfway = sum / sum.dot(sum).sqrt().max(BRDF_MIN_DIVISOR);
-        let fresnel = brdf_fresnel(surface.normal_reflectance, view.dot(halfway).clamp(0.0, 1.0));
+        let fresnel =
+            brdf_fresnel(surface.normal_reflectance, surface.film, view.dot(halfway).clamp(0.0, 1.0));
         let mut enters = Vec3::ONE - fresnel;
         if surface.film > 0.0 {
             enters += (out * self.data.wet_in(surface, cosine) - enters) * surface.film;
