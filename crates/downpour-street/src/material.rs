@@ -230,18 +230,39 @@ impl Material {
                 look
             }
             Self::Soil => look([0.05, 0.042, 0.034], 0.95),
-            Self::Brick => textured("brick_color.jpg", Some(("brick_normal.jpg", 1.0)), 0.9),
-            Self::BrickPale => textured("brick_pale_color.jpg", Some(("brick_normal.jpg", 1.0)), 0.9),
-            Self::Plaster => textured("plaster_color.jpg", Some(("plaster_normal.jpg", 1.0)), 0.92),
-            Self::Ashlar => textured("ashlar_color.jpg", Some(("ashlar_normal.jpg", 1.0)), 0.85),
-            Self::Stone => textured("stone_color.jpg", Some(("stone_normal.jpg", 1.0)), 0.82),
-            Self::Roof => textured("roof_color.jpg", Some(("roof_normal.jpg", 1.0)), 0.75),
-            Self::Zinc => {
-                Look { metallic: 0.85, ..textured("zinc_color.jpg", Some(("zinc_normal.jpg", 1.0)), 0.48) }
+            Self::Brick => rough(
+                textured("brick_color.jpg", Some(("brick_normal.jpg", 1.0)), 1.0),
+                "brick_roughness.jpg",
+            ),
+            Self::BrickPale => rough(
+                textured("brick_pale_color.jpg", Some(("brick_normal.jpg", 1.0)), 1.0),
+                "brick_roughness.jpg",
+            ),
+            Self::Plaster => rough(
+                textured("plaster_color.jpg", Some(("plaster_normal.jpg", 1.0)), 1.0),
+                "plaster_roughness.jpg",
+            ),
+            Self::Ashlar => rough(
+                textured("ashlar_color.jpg", Some(("ashlar_normal.jpg", 1.0)), 1.0),
+                "ashlar_roughness.jpg",
+            ),
+            Self::Stone => rough(
+                textured("stone_color.jpg", Some(("stone_normal.jpg", 1.0)), 1.0),
+                "stone_roughness.jpg",
+            ),
+            Self::Roof => {
+                rough(textured("roof_color.jpg", Some(("roof_normal.jpg", 1.0)), 1.0), "roof_roughness.jpg")
             }
-            Self::Joinery => textured("joinery_color.jpg", Some(("joinery_normal.jpg", 1.0)), 0.5),
-            Self::Iron => textured("iron_color.jpg", None, 0.55),
-            Self::Wood => textured("wood_color.jpg", None, 0.65),
+            Self::Zinc => {
+                let look = textured("zinc_color.jpg", Some(("zinc_normal.jpg", 1.0)), 1.0);
+                Look { metallic: 0.85, ..rough(look, "zinc_roughness.jpg") }
+            }
+            Self::Joinery => rough(
+                textured("joinery_color.jpg", Some(("joinery_normal.jpg", 1.0)), 1.0),
+                "joinery_roughness.jpg",
+            ),
+            Self::Iron => rough(textured("iron_color.jpg", None, 1.0), "iron_roughness.jpg"),
+            Self::Wood => rough(textured("wood_color.jpg", None, 1.0), "wood_roughness.jpg"),
             Self::Cloth => Look {
                 more: json!({"doubleSided": true}),
                 ..textured("cloth_color.jpg", Some(("cloth_normal.jpg", 1.0)), 0.95)

@@ -10,7 +10,7 @@ use image::{ExtendedColorType, ImageEncoder};
 pub(crate) struct Raster {
     width: u32,
     height: u32,
-    texels: Vec<[f32; 4]>,
+    pub(crate) texels: Vec<[f32; 4]>,
 }
 
 /// File formats of textures.

@@ -169,8 +169,10 @@ fn scenes(options: &Options, folder: &Path) -> Result<Vec<Scene>, String> {
             });
         }
     }
+    // In a folder of its own: a model of boxes has the name of its buffer, too.
+    let own = folder.join("own-street");
     for of_night in [false, true] {
-        let street = OwnStreet::write(folder, of_night)?;
+        let street = OwnStreet::write(&own, of_night)?;
         for (sky, map, scale) in &skies {
             if !fits(sky, of_night, false) {
                 continue;

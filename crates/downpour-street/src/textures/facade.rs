@@ -72,7 +72,13 @@ pub(crate) fn brick(look: &Bricks) -> Tile {
         let (_, tone, _) = brick(u, v);
         body(u, v) * (4.0e-3 + tone * 1.5e-3) + fractal(u, v, [110, 110], 2, 77) * 0.5e-3
     });
-    Tile::plain(color, height)
+    // Overburnt bricks have a skin of glass.
+    let roughness = Raster::gray(SIZE / 2, SIZE / 2, |u, v| {
+        let (_, _, kind) = brick(u, v);
+        let clay = mix(0.84, 0.95, fractal(u, v, [20, 20], 3, 78)) - 0.25 * smooth(0.86, 0.97, kind);
+        mix(0.97, clay, body(u, v))
+    });
+    Tile { color, height, roughness }
 }
 
 /// Float-finished plaster, white: its paint comes with the vertices. Rain has streaked it, and hair cracks go through it.
@@ -84,19 +90,23 @@ pub(super) fn plaster() -> Tile {
         let cell = cellular((u + bend).rem_euclid(1.0), (v - bend).rem_euclid(1.0), [4, 3], 85);
         smooth(0.016, 0.004, cell.second - cell.nearest) * smooth(0.50, 0.62, fractal(u, v, [3, 3], 2, 87))
     };
+    let damp = |u: f32, v: f32| smooth(0.54, 0.78, fractal(u, v, [3, 5], 4, 88));
     let color = Raster::new(SIZE, SIZE, |u, v| {
         let cloud = fractal(u, v, [4, 4], 5, 82);
-        let damp = smooth(0.54, 0.78, fractal(u, v, [3, 5], 4, 88));
         let tone =
             0.87 * mix(0.90, 1.05, cloud) * mix(0.955, 1.02, streak(u, v)) * mix(1.0, 0.68, crack(u, v));
-        let [r, g, b] = mix3([1.0; 3], [0.86, 0.85, 0.80], damp).map(|c| (c * tone).min(1.0));
+        let [r, g, b] = mix3([1.0; 3], [0.86, 0.85, 0.80], damp(u, v)).map(|c| (c * tone).min(1.0));
         [r, g, b, 1.0]
     });
     let height = Raster::gray(SIZE, SIZE, |u, v| {
         fractal(u, v, [120, 120], 2, 83) * 0.8e-3 + fractal(u, v, [7, 7], 3, 84) * 3.5e-3
             - crack(u, v) * 1.2e-3
     });
-    Tile::plain(color, height)
+    // Paint holds on longest where it stays dry; elsewhere it has chalked.
+    let roughness = Raster::gray(128, 128, |u, v| {
+        mix(0.86, 0.94, fractal(u, v, [24, 24], 3, 89)) + 0.05 * damp(u, v).max(crack(u, v))
+    });
+    Tile { color, height, roughness }
 }
 
 /// Blocks of limestone: courses of 40 cm, blocks of 80 cm in half bond, joints of 7 mm; the hue comes with the vertices.
@@ -131,7 +141,13 @@ pub(super) fn ashlar() -> Tile {
         let (_, tone, _) = block(u, v);
         body(u, v) * (6.0e-3 + tone * 1.5e-3) + fractal(u, v, [40, 40], 3, 89) * 1.6e-3 - pits(u, v) * 1.5e-3
     });
-    Tile::plain(color, height)
+    // Sawn faces, some rubbed smooth, between joints and pits.
+    let roughness = Raster::gray(SIZE / 2, SIZE / 2, |u, v| {
+        let (_, tone, hue) = block(u, v);
+        let face = 0.74 + 0.1 * tone + 0.06 * hue + 0.12 * (fractal(u, v, [20, 20], 3, 90) - 0.5);
+        mix(0.96, face, body(u, v) * (1.0 - pits(u, v)))
+    });
+    Tile { color, height, roughness }
 }
 
 /// Dressed stone, light gray: its hue comes with the vertices.
@@ -143,19 +159,24 @@ pub(super) fn stone() -> Tile {
     let height = Raster::gray(256, 256, |u, v| {
         fractal(u, v, [50, 50], 2, 93) * 0.7e-3 + fractal(u, v, [8, 8], 3, 94) * 1.4e-3
     });
-    Tile::plain(color, height)
+    let roughness = Raster::gray(128, 128, |u, v| {
+        mix(0.70, 0.90, fractal(u, v, [4, 4], 5, 92)) + 0.1 * (fractal(u, v, [20, 20], 2, 95) - 0.5)
+    });
+    Tile { color, height, roughness }
 }
 
 /// Paint on wood, brushed along v, with fine cracks and dirt; its color comes with the vertices.
 pub(super) fn joinery() -> Tile {
     let worn = |u: f32, v: f32| smooth(0.60, 0.74, fractal(u, v, [40, 5], 4, 115));
+    let dirt = |u: f32, v: f32| fractal(u, v, [4, 4], 4, 114);
     let color = Raster::gray(256, 256, |u, v| {
         let brushed = mix(0.90, 1.02, fractal(u, v, [90, 4], 2, 113));
-        let dirt = mix(0.84, 1.03, fractal(u, v, [4, 4], 4, 114));
-        0.94 * brushed * dirt * mix(1.0, 0.74, worn(u, v))
+        0.94 * brushed * mix(0.84, 1.03, dirt(u, v)) * mix(1.0, 0.74, worn(u, v))
     });
     let height = Raster::gray(256, 256, |u, v| fractal(u, v, [80, 4], 2, 116) * 0.5e-3 - worn(u, v) * 0.4e-3);
-    Tile::plain(color, height)
+    // Gloss paint under dirt, dull where it is worn.
+    let roughness = Raster::gray(128, 128, |u, v| mix(mix(0.60, 0.34, dirt(u, v)), 0.82, worn(u, v)));
+    Tile { color, height, roughness }
 }
 
 /// Canvas, white: its color comes with the vertices.
@@ -187,10 +208,10 @@ pub(crate) fn roof_tiles() -> Tile {
         let down = v * ROWS as f32 - row;
         (down, across.min(1.0 - across), hash(column, row as i32, 101), hash(column, row as i32, 102))
     };
+    let lichen = |u: f32, v: f32| smooth(0.62, 0.85, fractal(u, v, [10, 10], 4, 103));
     let color = Raster::gray(SIZE, SIZE, |u, v| {
         let (down, side, tone, other) = tile(u, v);
-        let lichen = smooth(0.62, 0.85, fractal(u, v, [10, 10], 4, 103)) * 0.3;
-        let shade = mix(0.5, 0.92, tone) * mix(0.9, 1.1, other) + lichen;
+        let shade = mix(0.5, 0.92, tone) * mix(0.9, 1.1, other) + lichen(u, v) * 0.3;
         let shadow = smooth(0.0, 0.14, down) * smooth(0.01, 0.05, side);
         shade * mix(0.32, 1.0, shadow) * mix(0.88, 1.1, fractal(u, v, [80, 80], 2, 104))
     });
@@ -199,21 +220,51 @@ pub(crate) fn roof_tiles() -> Tile {
         // A tile rises to its lower edge, which is above the next row.
         (down * 0.012 + tone * 3.0e-3) * smooth(0.0, 0.03, side)
     });
-    Tile::plain(color, height)
+    let roughness = Raster::gray(SIZE / 2, SIZE / 2, |u, v| {
+        let (_, _, tone, other) = tile(u, v);
+        mix(0.62 + 0.12 * tone + 0.10 * other, 0.97, lichen(u, v))
+    });
+    Tile { color, height, roughness }
 }
 
 /// Grain of planed wood along u; its color comes with the vertices.
-pub(crate) fn wood() -> Raster {
-    Raster::gray(256, 64, |u, v| {
-        let rings = fractal(u, v, [3, 24], 4, 111);
-        let pores = fractal(u, v, [24, 90], 2, 112);
-        0.8 * mix(0.72, 1.2, rings) * mix(0.85, 1.1, pores)
-    })
+pub(super) fn wood() -> Tile {
+    let rings = |u: f32, v: f32| fractal(u, v, [3, 24], 4, 111);
+    let pores = |u: f32, v: f32| fractal(u, v, [24, 90], 2, 112);
+    let color = Raster::gray(256, 64, |u, v| 0.8 * mix(0.72, 1.2, rings(u, v)) * mix(0.85, 1.1, pores(u, v)));
+    // Late wood is dense and takes a polish; pores are open.
+    let roughness = Raster::gray(256, 64, |u, v| mix(0.50, 0.78, rings(u, v)) + 0.12 * (0.5 - pores(u, v)));
+    let height = Raster::gray(8, 8, |_, _| 0.0);
+    Tile { color, height, roughness }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::textures::metal::{iron, zinc};
+
+    /// Roughness is that of what it is in the mean, varies, and is none that a surface cannot have.
+    #[test]
+    fn materials_are_as_rough_as_real_ones() {
+        for (name, tile, mean, least_spread) in [
+            ("brick", brick(&RED), 0.91, 0.02),
+            ("plaster", plaster(), 0.92, 0.01),
+            ("ashlar", ashlar(), 0.84, 0.03),
+            ("stone", stone(), 0.80, 0.02),
+            ("roof", roof_tiles(), 0.75, 0.04),
+            ("joinery", joinery(), 0.51, 0.04),
+            ("wood", wood(), 0.64, 0.02),
+            ("zinc", zinc(), 0.49, 0.02),
+            ("iron", iron(), 0.56, 0.05),
+        ] {
+            let of: Vec<f32> = tile.roughness.texels.iter().map(|texel| texel[1]).collect();
+            let found = of.iter().sum::<f32>() / of.len() as f32;
+            let spread = (of.iter().map(|r| (r - found) * (r - found)).sum::<f32>() / of.len() as f32).sqrt();
+            assert!((found - mean).abs() < 0.03, "{name}: {found}");
+            assert!(spread > least_spread && spread < 0.2, "{name}: {spread}");
+            assert!(of.iter().all(|r| (0.25..=1.0).contains(r)), "{name}");
+        }
+    }
 
     #[test]
     fn walls_reflect_what_real_ones_do() {

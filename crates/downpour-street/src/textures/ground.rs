@@ -38,8 +38,9 @@ pub(crate) fn asphalt() -> Tile {
         dome * mix(0.5e-3, 1.1e-3, id) + fractal(u, v, [14, 14], 3, 31) * 1.6e-3
     });
     // Tops are polished by tires; water is between them.
-    let roughness =
-        Raster::gray(SIZE, SIZE, |u, v| mix(0.5, 0.95, mottle(u + 0.3, v)) * mix(1.0, 0.85, dome(u, v).0));
+    let roughness = Raster::gray(SIZE / 2, SIZE / 2, |u, v| {
+        mix(0.5, 0.95, mottle(u + 0.3, v)) * mix(1.0, 0.85, dome(u, v).0)
+    });
     Tile { color, height, roughness }
 }
 
