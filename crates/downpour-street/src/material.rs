@@ -149,6 +149,13 @@ fn textured(color: &'static str, normal: Option<(&'static str, f64)>, roughness:
     Look { maps, ..look([1.0; 3], roughness) }
 }
 
+/// A look of which a map says how rough it is, too.
+fn tiled(color: &'static str, normal: Option<&'static str>, roughness: &'static str) -> Look {
+    let mut look = textured(color, normal.map(|name| (name, 1.0)), 1.0);
+    look.maps.roughness = Some(roughness);
+    look
+}
+
 impl Material {
     /// Edge of the tile of its texture, meters; 1 without one.
     #[must_use]
@@ -206,63 +213,30 @@ impl Material {
         };
         // 2700 to 3000 K as the camera at about 4000 K shows it.
         const WARM: [f64; 3] = [1.0, 0.84, 0.63];
-        let rough = |mut look: Look, name: &'static str| {
-            look.maps.roughness = Some(name);
-            look
-        };
         match self {
-            Self::Asphalt => rough(
-                textured("asphalt_color.jpg", Some(("asphalt_normal.jpg", 1.0)), 1.0),
-                "asphalt_roughness.jpg",
-            ),
-            Self::Setts => rough(
-                textured("setts_color.jpg", Some(("setts_normal.jpg", 1.0)), 1.0),
-                "setts_roughness.jpg",
-            ),
+            Self::Asphalt => tiled("asphalt_color.jpg", Some("asphalt_normal.jpg"), "asphalt_roughness.jpg"),
+            Self::Setts => tiled("setts_color.jpg", Some("setts_normal.jpg"), "setts_roughness.jpg"),
             Self::Curb => textured("curb_color.jpg", Some(("curb_normal.jpg", 1.0)), 0.75),
-            Self::Slabs => rough(
-                textured("slabs_color.jpg", Some(("slabs_normal.jpg", 1.0)), 1.0),
-                "slabs_roughness.jpg",
-            ),
+            Self::Slabs => tiled("slabs_color.jpg", Some("slabs_normal.jpg"), "slabs_roughness.jpg"),
             Self::Cover => {
                 let mut look = Look { metallic: 0.6, ..look([0.16, 0.145, 0.13], 0.5) };
                 look.maps.normal = Some(("cover_normal.jpg", 1.0));
                 look
             }
             Self::Soil => look([0.05, 0.042, 0.034], 0.95),
-            Self::Brick => rough(
-                textured("brick_color.jpg", Some(("brick_normal.jpg", 1.0)), 1.0),
-                "brick_roughness.jpg",
-            ),
-            Self::BrickPale => rough(
-                textured("brick_pale_color.jpg", Some(("brick_normal.jpg", 1.0)), 1.0),
-                "brick_roughness.jpg",
-            ),
-            Self::Plaster => rough(
-                textured("plaster_color.jpg", Some(("plaster_normal.jpg", 1.0)), 1.0),
-                "plaster_roughness.jpg",
-            ),
-            Self::Ashlar => rough(
-                textured("ashlar_color.jpg", Some(("ashlar_normal.jpg", 1.0)), 1.0),
-                "ashlar_roughness.jpg",
-            ),
-            Self::Stone => rough(
-                textured("stone_color.jpg", Some(("stone_normal.jpg", 1.0)), 1.0),
-                "stone_roughness.jpg",
-            ),
-            Self::Roof => {
-                rough(textured("roof_color.jpg", Some(("roof_normal.jpg", 1.0)), 1.0), "roof_roughness.jpg")
-            }
+            Self::Brick => tiled("brick_color.jpg", Some("brick_normal.jpg"), "brick_roughness.jpg"),
+            Self::BrickPale => tiled("brick_pale_color.jpg", Some("brick_normal.jpg"), "brick_roughness.jpg"),
+            Self::Plaster => tiled("plaster_color.jpg", Some("plaster_normal.jpg"), "plaster_roughness.jpg"),
+            Self::Ashlar => tiled("ashlar_color.jpg", Some("ashlar_normal.jpg"), "ashlar_roughness.jpg"),
+            Self::Stone => tiled("stone_color.jpg", Some("stone_normal.jpg"), "stone_roughness.jpg"),
+            Self::Roof => tiled("roof_color.jpg", Some("roof_normal.jpg"), "roof_roughness.jpg"),
             Self::Zinc => {
-                let look = textured("zinc_color.jpg", Some(("zinc_normal.jpg", 1.0)), 1.0);
-                Look { metallic: 0.85, ..rough(look, "zinc_roughness.jpg") }
+                let look = tiled("zinc_color.jpg", Some("zinc_normal.jpg"), "zinc_roughness.jpg");
+                Look { metallic: 0.85, ..look }
             }
-            Self::Joinery => rough(
-                textured("joinery_color.jpg", Some(("joinery_normal.jpg", 1.0)), 1.0),
-                "joinery_roughness.jpg",
-            ),
-            Self::Iron => rough(textured("iron_color.jpg", None, 1.0), "iron_roughness.jpg"),
-            Self::Wood => rough(textured("wood_color.jpg", None, 1.0), "wood_roughness.jpg"),
+            Self::Joinery => tiled("joinery_color.jpg", Some("joinery_normal.jpg"), "joinery_roughness.jpg"),
+            Self::Iron => tiled("iron_color.jpg", None, "iron_roughness.jpg"),
+            Self::Wood => tiled("wood_color.jpg", None, "wood_roughness.jpg"),
             Self::Cloth => Look {
                 more: json!({"doubleSided": true}),
                 ..textured("cloth_color.jpg", Some(("cloth_normal.jpg", 1.0)), 0.95)

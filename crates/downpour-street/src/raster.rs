@@ -10,7 +10,7 @@ use image::{ExtendedColorType, ImageEncoder};
 pub(crate) struct Raster {
     width: u32,
     height: u32,
-    pub(crate) texels: Vec<[f32; 4]>,
+    texels: Vec<[f32; 4]>,
 }
 
 /// File formats of textures.
@@ -80,6 +80,15 @@ impl Raster {
     pub(crate) fn mean(&self) -> [f32; 3] {
         let n = self.texels.len() as f32;
         std::array::from_fn(|k| self.texels.iter().map(|t| t[k]).sum::<f32>() / n)
+    }
+
+    /// Least and largest value of the second component, and its standard deviation.
+    #[cfg(test)]
+    pub(crate) fn spread(&self) -> [f32; 3] {
+        let (mean, n) = (self.mean()[1], self.texels.len() as f32);
+        let of = || self.texels.iter().map(|texel| texel[1]);
+        let variance = of().map(|value| (value - mean) * (value - mean)).sum::<f32>() / n;
+        [of().fold(f32::MAX, f32::min), of().fold(f32::MIN, f32::max), variance.sqrt()]
     }
 
     /// The bytes of the file.

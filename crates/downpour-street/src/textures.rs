@@ -120,4 +120,9 @@ impl Tile {
     fn plain(color: Raster, height: Raster) -> Self {
         Self { color, height, roughness: Raster::gray(8, 8, |_, _| 1.0) }
     }
+
+    /// A tile without relief.
+    fn flat(color: Raster, roughness: Raster) -> Self {
+        Self { color, height: Raster::gray(8, 8, |_, _| 0.0), roughness }
+    }
 }

@@ -42,6 +42,5 @@ pub(super) fn iron() -> Tile {
         [r, g, b, 1.0]
     });
     let roughness = Raster::gray(128, 128, |u, v| mix(mix(0.42, 0.58, grain(u, v)), 0.92, rust(u, v)));
-    let height = Raster::gray(8, 8, |_, _| 0.0);
-    Tile { color, height, roughness }
+    Tile::flat(color, roughness)
 }
