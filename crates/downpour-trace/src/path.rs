@@ -550,7 +550,7 @@ impl SceneView<'_> {
                     if path_max(path_albedo(&found)) > 0.0 || found.roughness >= PATH_SECONDARY_ROUGHNESS {
                         leaves = PathLeave::Shown;
                         found = self.path_secondary(&found, ray.along, 1.0);
-                        light.factor = ray.mirror * (path_albedo(&found) + found.normal_reflectance * 0.5);
+                        light.factor = ray.mirror * path_albedo(&found);
                         light.distance = hit.distance;
                         light.normal = found.normal;
                         light.position = found.position;

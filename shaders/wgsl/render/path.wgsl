@@ -740,7 +740,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     if path_max(path_albedo(found)) > 0.0 || found.roughness >= PATH_SECONDARY_ROUGHNESS {
                         leaves = PATH_SHOWN;
                         found = path_secondary(found, ray.along, 1.0);
-                        light.factor = ray.mirror * (path_albedo(found) + found.normal_reflectance * 0.5);
+                        light.factor = ray.mirror * path_albedo(found);
                         light.distance = hit.distance;
                         light.normal = found.normal;
                         light.position = found.position;
