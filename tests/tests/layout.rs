@@ -166,7 +166,7 @@ fn hosts() -> Vec<Host> {
             size, quads, degree, coefficients, weights, dt, twice, kick, viscosity, keep, sponge_cells, sponge_drag,
             steps, halo, half_storage, slope, first_texel),
         host!(PuddleSeed as "PuddleSeed" in &lattice::puddle::PUDDLE_SEED,
-            center, per_length, amplitude, lift, reach, shape, unused),
+            center, per_length, amplitude, lift, reach),
         host!(BvhNode as "BvhNode" in &bvh::BVH, low_x, low_y, low_z, high_x, high_y, high_z, child),
         host!(BvhTriangle as "BvhTriangle" in &bvh::BVH, corner, index, edge_1, lets_through, edge_2),
         host!(CameraUniform as "SpecimenCamera" in &specimen::SPECIMEN, right, step, up, distance, back, samples),

@@ -1,6 +1,7 @@
 //! Buffers that stay from frame to frame.
 
 use std::collections::HashMap;
+use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 use bytemuck::Pod;
@@ -15,6 +16,12 @@ const SMALL: u64 = 4 << 20;
 
 /// Frames after which bindings that no frame has asked for are forgotten, with their hold on buffers.
 const BINDINGS_LAST: u64 = 8;
+
+/// Bytes of a buffer whose change is looked for together, whole words.
+const CHANGED: usize = 64;
+
+/// Bytes that have not changed between two that have, from which on those are written one by one: a write costs more than these.
+const MIN_GAP: usize = 256;
 
 /// A kernel's pipeline with the buffers of its bindings.
 type BoundTo = (wgpu::ComputePipeline, Vec<(u32, wgpu::Buffer)>);
@@ -268,14 +275,19 @@ impl BufferSource for BufferPool {
         usage: wgpu::BufferUsages,
     ) -> Result<wgpu::Buffer, GpuError> {
         let buffer = self.buffer(label, least.max(bytes.len() as u64), usage)?;
-        let is_there = {
-            let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-            kept.contents.get(&buffer).is_some_and(|known| known.starts_with(bytes))
-        };
-        if !is_there {
-            self.write(&buffer, bytes);
+        let changes = {
             let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-            kept.contents.insert(buffer.clone(), bytes.to_vec());
+            let known = kept.contents.entry(buffer.clone()).or_default();
+            let changes = changed_ranges(known, bytes);
+            for range in &changes {
+                known.resize(known.len().max(range.end), 0);
+                known[range.clone()].copy_from_slice(&bytes[range.clone()]);
+            }
+            changes
+        };
+        for range in changes {
+            self.note_written(range.len() as u64);
+            self.gpu.write_at(&buffer, range.start as u64, &bytes[range]);
         }
         Ok(buffer)
     }
@@ -311,6 +323,22 @@ impl BufferSource for BufferPool {
     fn gpu(&self) -> &Gpu {
         &self.gpu
     }
+}
+
+/// Parts of `bytes` that differ from the `known` ones; those that are close together are one.
+fn changed_ranges(known: &[u8], bytes: &[u8]) -> Vec<Range<usize>> {
+    let mut ranges: Vec<Range<usize>> = Vec::new();
+    for (k, part) in bytes.chunks(CHANGED).enumerate() {
+        let range = k * CHANGED..k * CHANGED + part.len();
+        if known.get(range.clone()) == Some(part) {
+            continue;
+        }
+        match ranges.last_mut() {
+            Some(last) if range.start - last.end < MIN_GAP => last.end = range.end,
+            _ => ranges.push(range),
+        }
+    }
+    ranges
 }
 
 #[cfg(test)]
@@ -363,6 +391,49 @@ mod tests {
         // A larger buffer has nothing of the smaller one.
         let (larger, written) = frame(&[7; 100_000], 0.25);
         assert!(larger != first && written == 400_000);
+    }
+
+    #[test]
+    fn only_what_has_changed_is_written() {
+        let pool = BufferPool::new(&noop());
+        let mut table = vec![0u32; 1000];
+        let written = |table: &[u32]| {
+            pool.begin_frame();
+            pool.constants("table", table).unwrap();
+            pool.written()
+        };
+        assert_eq!(written(&table), 4000);
+        table[500] = 1;
+        assert_eq!(written(&table), 64);
+        // Far apart; close together, as one; the end, which is not whole.
+        table[20] = 1;
+        table[900] = 2;
+        assert_eq!(written(&table), 2 * 64);
+        table[600] = 1;
+        table[630] = 1;
+        assert_eq!(written(&table), 3 * 64);
+        table[999] = 1;
+        assert_eq!(written(&table), 32);
+        // What was behind a shorter one is still there.
+        assert_eq!(written(&table[..100]), 0);
+        assert_eq!(written(&table), 0);
+    }
+
+    #[test]
+    fn changed_ranges_are_all_that_differs() {
+        let mut known = vec![7u8; 1003];
+        let mut bytes = vec![7u8; 1201];
+        for at in [0, 63, 64, 400, 401, 999, 1002] {
+            bytes[at] = 1;
+        }
+        let ranges = changed_ranges(&known, &bytes);
+        assert!(ranges.windows(2).all(|pair| pair[1].start - pair[0].end >= MIN_GAP), "{ranges:?}");
+        assert!(ranges.iter().all(|range| range.start % CHANGED == 0));
+        known.resize(bytes.len(), 0);
+        for range in ranges {
+            known[range.clone()].copy_from_slice(&bytes[range]);
+        }
+        assert_eq!(known, bytes);
     }
 
     #[test]

@@ -13,10 +13,8 @@ struct PuddleSeed {
     amplitude: f32,
     // Fraction of exp(-q) that compensates the volume lost to the cells, the border and the land.
     lift: f32,
-    // Radius in cells beyond which the seed is 0.
+    // Radius in cells beyond which the seed is 0; below 0 for a bump.
     reach: f32,
-    shape: u32,
-    unused: u32,
 }
 
 @group(0) @binding(3) var<storage, read> puddle_seed_list: array<PuddleSeed>;
@@ -37,8 +35,9 @@ fn puddle_seed_height(seed: PuddleSeed, cell: vec2f) -> f32 {
     let away = cell + 0.5 - seed.center;
     let distance = sqrt(away.x * away.x + away.y * away.y);
     let q = distance * seed.per_length;
-    let height = seed.amplitude * (puddle_seed_shape(seed.shape, q) + seed.lift * exp(-q));
-    return select(0.0, height, distance < seed.reach);
+    let shape = select(PUDDLE_SEED_CRATER, PUDDLE_SEED_BUMP, seed.reach < 0.0);
+    let height = seed.amplitude * (puddle_seed_shape(shape, q) + seed.lift * exp(-q));
+    return select(0.0, height, distance < abs(seed.reach));
 }
 
 @compute @workgroup_size(16, 16)

@@ -176,11 +176,13 @@ impl GpuPuddle {
     /// As [`step`](Self::step) and [`seed`](Self::seed); the puddle is then unchanged.
     pub fn rain(&mut self, impacts: &[Vec<Impact>], dt_s: f32) -> Result<(), GpuPuddleError> {
         let substeps = self.model.substeps(f64::from(dt_s))?;
-        let seeds = impacts.iter().map(|impacts| craters(&self.model, impacts));
-        let seeds = seeds.collect::<Result<Vec<_>, _>>()?;
+        // Those of all steps together are worth many threads.
+        let seeds = craters(&self.model, impacts.iter().flatten())?;
+        let mut rest = &seeds[..];
         self.pool.begin_frame();
         let mut work = Work { newer: self.newer, ..Work::default() };
-        for seeds in &seeds {
+        for impacts in impacts {
+            let seeds = rest.split_off(..impacts.len()).unwrap_or_default();
             self.add_seeds(&mut work, seeds)?;
             self.add_steps(&mut work, f64::from(dt_s), substeps)?;
         }

@@ -74,44 +74,57 @@ pub struct PuddleSeed {
     pub amplitude: f32,
     /// Fraction of exp(-q) that compensates the volume lost to the cells, the border and the land.
     pub lift: f32,
-    /// Radius in cells beyond which the seed is 0.
+    /// Radius in cells beyond which the seed is 0; below 0 for a bump.
     pub reach: f32,
-    /// Shape: `PUDDLE_SEED_CRATER` or `PUDDLE_SEED_BUMP`.
-    pub shape: u32,
-    /// Padding.
-    pub unused: u32,
 }
 
 /// Height of a seed of amplitude 1 without lift, at a distance in lengths.
 #[must_use]
 pub fn puddle_seed_shape(shape: u32, q: f32) -> f32 {
+    shape_of(shape, q, ops::exp(-q))
+}
+
+/// The same where exp(-q) is known.
+fn shape_of(shape: u32, q: f32, fall: f32) -> f32 {
     if shape == PUDDLE_SEED_BUMP {
         let hill = (1.0 - q * q).max(0.0);
         return hill * hill;
     }
-    PUDDLE_SEED_HEIGHT * ops::exp(-q) * ops::sin(PUDDLE_SEED_TURN * (q + PUDDLE_SEED_SHIFT))
+    PUDDLE_SEED_HEIGHT * fall * ops::sin(PUDDLE_SEED_TURN * (q + PUDDLE_SEED_SHIFT))
+}
+
+/// Distance of a cell's middle from the center of a seed, in cells.
+fn distance(seed: &PuddleSeed, cell: [f32; 2]) -> f32 {
+    let [x, y] = [0, 1].map(|axis| cell[axis] + 0.5 - seed.center[axis]);
+    (x * x + y * y).sqrt()
 }
 
 /// Height that a seed adds to a cell.
 #[must_use]
 pub fn puddle_seed_height(seed: &PuddleSeed, cell: [f32; 2]) -> f32 {
-    let [x, y] = [0, 1].map(|axis| cell[axis] + 0.5 - seed.center[axis]);
-    let distance = (x * x + y * y).sqrt();
+    let distance = distance(seed, cell);
     let q = distance * seed.per_length;
-    if distance < seed.reach {
-        seed.amplitude * (puddle_seed_shape(seed.shape, q) + seed.lift * ops::exp(-q))
+    if distance < seed.reach.abs() {
+        let fall = ops::exp(-q);
+        seed.amplitude * (shape_of(seed.shape(), q, fall) + seed.lift * fall)
     } else {
         0.0
     }
 }
 
 impl PuddleSeed {
+    /// `PUDDLE_SEED_CRATER` or `PUDDLE_SEED_BUMP`.
+    fn shape(&self) -> u32 {
+        if self.reach < 0.0 { PUDDLE_SEED_BUMP } else { PUDDLE_SEED_CRATER }
+    }
+
     /// Columns and rows of the cells that a seed may touch.
     fn cells(&self, size: [usize; 2]) -> [std::ops::Range<usize>; 2] {
+        let reach = self.reach.abs();
         [0, 1].map(|axis| {
             // A cast from f32 saturates, and NaN becomes 0.
-            let low = (self.center[axis] - self.reach).floor().max(0.0) as usize;
-            let high = (self.center[axis] + self.reach).ceil().max(0.0) as usize;
+            let low = (self.center[axis] - reach).floor().max(0.0) as usize;
+            let high = (self.center[axis] + reach).ceil().max(0.0) as usize;
             low.min(size[axis])..high.min(size[axis])
         })
     }
@@ -130,21 +143,28 @@ impl PuddleSeed {
 
     /// Sums of the shape and of exp(-q) over the cells of water.
     fn sums(&self, links: &Links) -> [f64; 2] {
-        let unit = Self { amplitude: 1.0, lift: 0.0, ..*self };
-        let lift = Self { lift: 1.0, ..unit };
         let mut sums = [0.0; 2];
         self.visit(links, |x, y| {
-            let cell = [x as f32, y as f32];
-            let shape = f64::from(puddle_seed_height(&unit, cell));
-            sums[0] += shape;
-            sums[1] += f64::from(puddle_seed_height(&lift, cell)) - shape;
+            let distance = distance(self, [x as f32, y as f32]);
+            if distance < self.reach.abs() {
+                let q = distance * self.per_length;
+                let fall = ops::exp(-q);
+                let height = shape_of(self.shape(), q, fall);
+                sums[0] += f64::from(height);
+                // As much as a lift of 1 adds to the height.
+                sums[1] += f64::from(height + fall) - f64::from(height);
+            }
         });
         sums
     }
 }
 
 /// Craters of impacts.
-pub(crate) fn craters(model: &Model, impacts: &[Impact]) -> Result<Vec<PuddleSeed>, LatticeError> {
+pub(crate) fn craters<'a>(
+    model: &Model,
+    impacts: impl IntoIterator<Item = &'a Impact>,
+) -> Result<Vec<PuddleSeed>, LatticeError> {
+    let impacts: Vec<&Impact> = impacts.into_iter().collect();
     impacts.par_iter().map(|impact| crater(model, impact)).collect()
 }
 
@@ -193,8 +213,6 @@ fn crater(model: &Model, impact: &Impact) -> Result<PuddleSeed, LatticeError> {
         amplitude: -amplitude as f32,
         lift: 0.0,
         reach: (REACH * length) as f32,
-        shape: PUDDLE_SEED_CRATER,
-        unused: 0,
     };
     let [shape, lift] = seed.sums(&model.links);
     if lift > 0.0 {
@@ -215,9 +233,7 @@ pub(crate) fn footprints(model: &Model, wake: &Wake) -> Result<Vec<PuddleSeed>, 
         per_length: (1.0 / radius) as f32,
         amplitude: amplitude as f32,
         lift: 0.0,
-        reach: radius as f32,
-        shape: PUDDLE_SEED_BUMP,
-        unused: 0,
+        reach: -radius as f32,
     };
     let (left, made) = (bump(from, draft), bump(to, -draft));
     let (up, down) = (left.sums(&model.links)[0], made.sums(&model.links)[0]);

@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use downpour_math::ops::f64 as ops;
 use downpour_shaders::render::puddle_rings::PUDDLE_RINGS_LIFE;
 use downpour_shaders::render::puddle_water::PUDDLE_WATER_MIN_DEPTH;
 use downpour_sim::impacts::Crossing;
@@ -26,7 +27,7 @@ const ASIDE_M: f64 = 0.25;
 /// Cells of a row of a map that are bounded together.
 const CELLS_BOUNDED: usize = 16;
 
-/// Parts in which the drops of the next span of time are found, one per picture, so that no picture has to find all of them.
+/// Pictures among which the search for the drops of the next span of time is divided where it is not known how many there are before it.
 const SHARES: usize = 6;
 
 /// Puddle, square of the world and span of time whose drops are found together.
@@ -59,6 +60,8 @@ pub(super) struct Impact {
     pub(super) ago_s: f32,
     /// m.
     pub(super) diameter: f32,
+    /// Where its diameter's logarithm is between those of the smallest and the largest, 0 to 1.
+    pub(super) size: f32,
     pub(super) id: u64,
 }
 
@@ -73,19 +76,27 @@ struct Shores {
 /// Drops on the water of puddles.
 #[derive(Debug)]
 pub(super) struct RingDrops {
-    /// Smallest diameter that is looked for, m.
-    smallest: f64,
+    /// Smallest diameter that is looked for, and the largest that there is, m.
+    diameters: [f64; 2],
     found: BTreeMap<Block, Found>,
     /// Of each puddle.
     shores: BTreeMap<usize, Shores>,
     /// Of the maps.
     origin: DVec3,
+    /// Time of the last picture, s.
+    last_s: f64,
 }
 
 impl RingDrops {
-    /// None yet; drops from a diameter, m, on will be looked for.
-    pub(super) fn new(smallest: f64) -> Self {
-        Self { smallest, found: BTreeMap::new(), shores: BTreeMap::new(), origin: DVec3::ZERO }
+    /// None yet; drops from the first of two diameters, m, on will be looked for, and none is larger than the second.
+    pub(super) fn new(diameters: [f64; 2]) -> Self {
+        Self {
+            diameters,
+            found: BTreeMap::new(),
+            shores: BTreeMap::new(),
+            origin: DVec3::ZERO,
+            last_s: f64::NAN,
+        }
     }
 
     /// Those that are known, puddle by puddle.
@@ -113,7 +124,13 @@ impl RingDrops {
         }
         let mut before = std::mem::take(&mut self.found);
         let mut anew = Vec::new();
-        let mut room = wanted.iter().filter(|wanted| wanted.is_next).count().div_ceil(SHARES);
+        let is_unknown = |wanted: &&Wanted| wanted.is_next && !before.contains_key(&wanted.block);
+        let next = wanted.iter().filter(is_unknown).min_by_key(|wanted| wanted.block.2);
+        let pictures = next.map_or(1, |wanted| {
+            pictures_before(wanted, &puddles[wanted.block.0].0, [self.last_s, rain.time_s])
+        });
+        let mut room = wanted.iter().filter(is_unknown).count().div_ceil(pictures);
+        self.last_s = rain.time_s;
         for Wanted { block, part, is_next } in wanted {
             let known = before
                 .remove(&block)
@@ -135,11 +152,12 @@ impl RingDrops {
             let span_s = [block.2, block.2 + 1].map(|k| k as f64 * CHUNK_S);
             let height = origin.y + f64::from(map.ground.middle.y);
             let known = known.map(|found| Ok((found.part, found.crossings)));
-            let crossings = known
-                .unwrap_or_else(|| Ok((part, rain.field.crossings(part, height, span_s, self.smallest)?)));
+            let crossings = known.unwrap_or_else(|| {
+                Ok((part, rain.field.crossings(part, height, span_s, self.diameters[0])?))
+            });
             match crossings {
                 Ok((part, crossings)) => {
-                    let impacts = impacts(map, origin, &crossings);
+                    let impacts = impacts(map, origin, &crossings, self.diameters);
                     Some(Ok((block, Found { part, crossings, impacts, cells: Arc::clone(&map.cells) })))
                 }
                 // There may be no next span: time has an end.
@@ -162,6 +180,18 @@ struct Wanted {
     is_next: bool,
 }
 
+/// Pictures from that of the second of two times, s, of the last and of the present one, until the drops of a block are needed.
+fn pictures_before(wanted: &Wanted, map: &PuddleMap, [last_s, time_s]: [f64; 2]) -> usize {
+    let needed_s = wanted.block.2 as f64 * CHUNK_S - slack(map);
+    let pictures = (needed_s - time_s) / (time_s - last_s);
+    if time_s > last_s { (pictures as usize).max(1) } else { SHARES }
+}
+
+/// Drops may come to the surface so long, in s, before or after they come to the height of a map's middle.
+fn slack(map: &PuddleMap) -> f64 {
+    f64::from(map.ground.reach) / 4.0
+}
+
 /// Squares of the world and spans of time in which drops come through the water of puddle `k` that make rings in a picture, and then
 /// those of the span after them.
 fn blocks(
@@ -181,8 +211,7 @@ fn blocks(
         .map(|(&square, &part)| (square, part))
         .collect();
     let life = f64::from(PUDDLE_RINGS_LIFE);
-    // Drops may come to the surface a little before or after they come to the middle's height.
-    let slack = f64::from(map.ground.reach) / 4.0;
+    let slack = slack(map);
     let spans = [rain.time_s - life - slack, rain.time_s + slack].map(|time| (time / CHUNK_S).floor() as i64);
     (spans[0]..=spans[1] + 1).flat_map(move |span| {
         let wanted =
@@ -191,8 +220,9 @@ fn blocks(
     })
 }
 
-/// The drops that meet the water of a map.
-fn impacts(map: &PuddleMap, origin: DVec3, crossings: &[Crossing]) -> Vec<Impact> {
+/// The drops, of two diameters and between, that meet the water of a map.
+fn impacts(map: &PuddleMap, origin: DVec3, crossings: &[Crossing], [low, high]: [f64; 2]) -> Vec<Impact> {
+    let range = ops::ln(high / low);
     let turn = turned(map.ground.turn);
     let impact = |crossing: &Crossing| {
         let at = (crossing.position - origin).as_vec3();
@@ -204,8 +234,9 @@ fn impacts(map: &PuddleMap, origin: DVec3, crossings: &[Crossing]) -> Vec<Impact
         // Where a part of the rain arrives, a part of the drops does.
         let chance = (crossing.id >> 40) as f32 / 16_777_216.0;
         let (time_s, diameter, id) = (crossing.time_s, crossing.diameter, crossing.id);
+        let size = (ops::ln(f64::from(diameter) / low) / range) as f32;
         let (at, drift) = (Vec2::new(at.x, at.z), water.velocity);
-        (chance < water.open).then_some(Impact { at, drift, time_s, ago_s, diameter, id })
+        (chance < water.open).then_some(Impact { at, drift, time_s, ago_s, diameter, size, id })
     };
     crossings.iter().filter_map(impact).collect()
 }

@@ -4,7 +4,7 @@
 //! picture shows falling. The larger ones near the eye make the ring of [`DropRing`] there; all the others are in the lattice of the
 //! ripples, from which the part of the larger ones is taken off. Rings are a function of time and eye alone.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
 
 use downpour_drop::distribution::DropSizeDistribution;
@@ -79,6 +79,18 @@ pub struct Rings {
     smallest: f64,
     slopes: Arc<[[u32; 4]]>,
     drops: RingDrops,
+    /// Of each puddle.
+    waters: BTreeMap<usize, WetSamples>,
+}
+
+/// Points of a map that are under water: some of them, evenly spread.
+#[derive(Debug)]
+struct WetSamples {
+    cells: Arc<[[f32; 4]]>,
+    /// m from the origin of the maps.
+    points: Vec<Vec2>,
+    /// Area for which each stands, m^2.
+    area: f64,
 }
 
 /// The rain on the water of a picture.
@@ -147,7 +159,8 @@ impl Rings {
         let area = f64::from(PUDDLE_RINGS_CELL * PUDDLE_RINGS_CELL);
         let smallest = smallest_of(&bins, heaviest, EXPECTED_IN_CELL / area).max(MIN_DIAMETER_M);
         let slopes = slopes(&law, smallest)?.into();
-        Ok(Self { heaviest: heaviest.clone(), bins, smallest, slopes, drops: RingDrops::new(smallest) })
+        let drops = RingDrops::new([smallest, DIAMETERS_M[1]]);
+        Ok(Self { heaviest: heaviest.clone(), bins, smallest, slopes, drops, waters: BTreeMap::new() })
     }
 
     /// Finds the rings of a picture on puddles whose positions are relative to `origin`.
@@ -163,7 +176,14 @@ impl Rings {
         let eye = rain.eye - origin;
         let middle = Vec2::new(eye.x as f32, eye.z as f32);
         let with_rings = || puddles.iter().enumerate().filter(|(_, (_, look))| look.has_rings());
-        let area: f64 = with_rings().map(|(_, (map, _))| area_near(map, middle)).sum();
+        let mut before = std::mem::take(&mut self.waters);
+        self.waters = with_rings()
+            .map(|(k, (map, _))| {
+                let known = before.remove(&k).filter(|water| Arc::ptr_eq(&water.cells, &map.cells));
+                (k, known.unwrap_or_else(|| WetSamples::new(map)))
+            })
+            .collect();
+        let area: f64 = self.waters.values().map(|water| water.area_near(middle)).sum();
         let life = f64::from(PUDDLE_RINGS_LIFE);
         let most = EXPECTED_RINGS / (life * area.max(1.0e-6));
         let smallest = smallest_of(&self.bins, &self.heaviest, most).max(self.smallest);
@@ -176,7 +196,7 @@ impl Rings {
         let mut known = HashSet::new();
         let mut placed: Vec<Placed> = Vec::new();
         for impact in self.drops.impacts().filter(|impact| f64::from(impact.diameter) >= smallest) {
-            let ring = self.placed(impact, &placing);
+            let ring = placed_ring(impact, &placing);
             placed.extend(ring.filter(|_| !overlap || known.insert(impact.id)));
         }
         placed.sort_unstable();
@@ -193,30 +213,6 @@ impl Rings {
         Ok(RingRows { slopes: Arc::clone(&self.slopes), cells, rings, part, corner, middle })
     }
 
-    /// The ring of a drop in a picture; `None` if there is none.
-    fn placed(&self, impact: &Impact, placing: &Placing) -> Option<Placed> {
-        let Placing { time_s, corner, middle } = *placing;
-        let age_s = (time_s - impact.time_s) as f32 - impact.ago_s;
-        let age = age_s / PUDDLE_RINGS_LIFE;
-        // Running water takes its rings along.
-        let at = impact.at + impact.drift * age_s;
-        // No ring is wider than a cell.
-        let is_near = at.distance(middle) < REACH_M as f32 + PUDDLE_RINGS_CELL;
-        if !is_near || !(0.0..1.0).contains(&age) {
-            return None;
-        }
-        let place = (at - corner) / PUDDLE_RINGS_CELL;
-        let cell = place.floor();
-        let [x, z] =
-            [cell.x, cell.y].map(|n| if n >= 0.0 && n < CELLS as f32 { Some(n as usize) } else { None });
-        let units = |part: f32| (part * 65536.0).clamp(0.0, 65535.0) as u32;
-        let within = place - cell;
-        let size =
-            ops::ln(f64::from(impact.diameter) / self.smallest) / ops::ln(DIAMETERS_M[1] / self.smallest);
-        let words = [units(within.x) | units(within.y) << 16, units(age) | units(size as f32) << 16];
-        Some((z? * CELLS + x?, words))
-    }
-
     /// Part of the mean square of the slope of a rain's ripples that rings of drops from a diameter on have.
     fn part(&self, rain: &DropSizeDistribution, smallest: f64) -> f32 {
         let whole: f64 = self.bins.iter().map(|bin| bin.flux(rain) * bin.whole).sum();
@@ -224,6 +220,27 @@ impl Rings {
         let rings: f64 = with_rings.map(|bin| bin.flux(rain) * bin.ring).sum();
         if whole > 0.0 { (rings / whole).min(0.999) as f32 } else { 0.0 }
     }
+}
+
+/// The ring of a drop in a picture; `None` if there is none.
+fn placed_ring(impact: &Impact, placing: &Placing) -> Option<Placed> {
+    let Placing { time_s, corner, middle } = *placing;
+    let age_s = (time_s - impact.time_s) as f32 - impact.ago_s;
+    let age = age_s / PUDDLE_RINGS_LIFE;
+    // Running water takes its rings along.
+    let at = impact.at + impact.drift * age_s;
+    // No ring is wider than a cell.
+    let is_near = at.distance(middle) < REACH_M as f32 + PUDDLE_RINGS_CELL;
+    if !is_near || !(0.0..1.0).contains(&age) {
+        return None;
+    }
+    let place = (at - corner) / PUDDLE_RINGS_CELL;
+    let cell = place.floor();
+    let [x, z] = [cell.x, cell.y].map(|n| if n >= 0.0 && n < CELLS as f32 { Some(n as usize) } else { None });
+    let units = |part: f32| (part * 65536.0).clamp(0.0, 65535.0) as u32;
+    let within = place - cell;
+    let words = [units(within.x) | units(within.y) << 16, units(age) | units(impact.size) << 16];
+    Some((z? * CELLS + x?, words))
 }
 
 /// Smallest diameter, m, from which on no more than `most` drops come through a square meter in a second.
@@ -270,24 +287,32 @@ fn slopes(law: &TerminalSpeed, smallest: f64) -> Result<Vec<[u32; 4]>, PuddleErr
     Ok(words.as_chunks().0.to_vec())
 }
 
-/// Area of the water of a puddle within reach of an eye, m^2, from some of the cells of its map.
-fn area_near(map: &PuddleMap, middle: Vec2) -> f64 {
-    let [columns, rows] = map.size;
-    let [x_step, y_step] = map.size.map(|count| count.div_ceil(AREA_SAMPLES).max(1));
-    let area = f64::from(map.ground.size.x * map.ground.size.y);
-    let (mut wet, mut all) = (0u32, 0u32);
-    for y in (y_step / 2..rows).step_by(y_step) {
-        for x in (x_step / 2..columns).step_by(x_step) {
-            all += 1;
-            if map.cells[y * columns + x][2] < PUDDLE_WATER_MIN_DEPTH {
-                continue;
+impl WetSamples {
+    fn new(map: &PuddleMap) -> Self {
+        let [columns, rows] = map.size;
+        let [x_step, y_step] = map.size.map(|count| count.div_ceil(AREA_SAMPLES).max(1));
+        let mut all = 0u32;
+        let mut points = Vec::new();
+        for y in (y_step / 2..rows).step_by(y_step) {
+            for x in (x_step / 2..columns).step_by(x_step) {
+                all += 1;
+                if map.cells[y * columns + x][2] < PUDDLE_WATER_MIN_DEPTH {
+                    continue;
+                }
+                let part = |at: usize, count: usize| (at as f32 + 0.5) / count as f32;
+                let at = map.ground.position(part(x, columns), part(y, rows));
+                points.push(Vec2::new(at.x, at.z));
             }
-            let part = |at: usize, count: usize| (at as f32 + 0.5) / count as f32;
-            let at = map.ground.position(part(x, columns), part(y, rows));
-            wet += u32::from(Vec2::new(at.x, at.z).distance(middle) < REACH_M as f32);
         }
+        let area = f64::from(map.ground.size.x * map.ground.size.y) / f64::from(all.max(1));
+        Self { cells: Arc::clone(&map.cells), points, area }
     }
-    area * f64::from(wet) / f64::from(all.max(1))
+
+    /// Area of the water within reach of an eye, m^2.
+    fn area_near(&self, middle: Vec2) -> f64 {
+        let is_near = |at: &&Vec2| at.distance_squared(middle) < (REACH_M * REACH_M) as f32;
+        self.area * self.points.iter().filter(is_near).count() as f64
+    }
 }
 
 impl RingRows {

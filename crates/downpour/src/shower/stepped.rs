@@ -402,10 +402,17 @@ impl Stepped {
         View { least_pixels: self.least_pixels.unwrap_or(view.least_pixels), ..view }
     }
 
-    /// The view in the middle of the time that pictures of a state cover.
+    /// The view in the middle of the time that pictures of a state cover, as wide and as fine as any of them: they may zoom meanwhile.
     fn view(&self, scenery: &dyn Scenery, time_s: f64) -> Result<View, ShowerError> {
         let horizon_s = self.options.shutter_s + self.options.wait_s;
-        Ok(self.viewed(scenery.view(time_s + 0.5 * horizon_s)?))
+        let [begin, middle, end] = [0.0, 0.5, 1.0].map(|part| scenery.view(time_s + part * horizon_s));
+        let mut view = middle?;
+        for at in [begin?, end?] {
+            view.half_width = view.half_width.max(at.half_width);
+            view.half_height = view.half_height.max(at.half_height);
+            view.pixel_angle = view.pixel_angle.min(at.pixel_angle);
+        }
+        Ok(self.viewed(view))
     }
 
     /// A rain that begins at a step.
