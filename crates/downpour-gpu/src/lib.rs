@@ -24,6 +24,7 @@
 
 pub mod adapter;
 mod buffer;
+mod changed;
 mod context;
 mod drivers;
 mod error;
@@ -39,6 +40,7 @@ pub mod timing;
 mod workgroups;
 
 pub use adapter::{AdapterChoice, AdapterDescription};
+pub use changed::changed_ranges;
 pub use context::{Gpu, GpuOptions, LimitSet};
 pub use error::GpuError;
 pub use kernel::{ComputeKernel, Dispatch};

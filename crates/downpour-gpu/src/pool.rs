@@ -1,12 +1,11 @@
 //! Buffers that stay from frame to frame.
 
 use std::collections::HashMap;
-use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 use bytemuck::Pod;
 
-use crate::{ComputeKernel, Gpu, GpuError};
+use crate::{ComputeKernel, Gpu, GpuError, changed_ranges};
 
 /// Least size of a kept storage buffer, bytes: lists of few drops change the most from frame to frame.
 const MIN_BYTES: u64 = 256 << 10;
@@ -278,7 +277,7 @@ impl BufferSource for BufferPool {
         let changes = {
             let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
             let known = kept.contents.entry(buffer.clone()).or_default();
-            let changes = changed_ranges(known, bytes);
+            let changes = changed_ranges(known, bytes, CHANGED, MIN_GAP);
             for range in &changes {
                 known.resize(known.len().max(range.end), 0);
                 known[range.clone()].copy_from_slice(&bytes[range.clone()]);
@@ -323,22 +322,6 @@ impl BufferSource for BufferPool {
     fn gpu(&self) -> &Gpu {
         &self.gpu
     }
-}
-
-/// Parts of `bytes` that differ from the `known` ones; those that are close together are one.
-fn changed_ranges(known: &[u8], bytes: &[u8]) -> Vec<Range<usize>> {
-    let mut ranges: Vec<Range<usize>> = Vec::new();
-    for (k, part) in bytes.chunks(CHANGED).enumerate() {
-        let range = k * CHANGED..k * CHANGED + part.len();
-        if known.get(range.clone()) == Some(part) {
-            continue;
-        }
-        match ranges.last_mut() {
-            Some(last) if range.start - last.end < MIN_GAP => last.end = range.end,
-            _ => ranges.push(range),
-        }
-    }
-    ranges
 }
 
 #[cfg(test)]
@@ -417,23 +400,6 @@ mod tests {
         // What was behind a shorter one is still there.
         assert_eq!(written(&table[..100]), 0);
         assert_eq!(written(&table), 0);
-    }
-
-    #[test]
-    fn changed_ranges_are_all_that_differs() {
-        let mut known = vec![7u8; 1003];
-        let mut bytes = vec![7u8; 1201];
-        for at in [0, 63, 64, 400, 401, 999, 1002] {
-            bytes[at] = 1;
-        }
-        let ranges = changed_ranges(&known, &bytes);
-        assert!(ranges.windows(2).all(|pair| pair[1].start - pair[0].end >= MIN_GAP), "{ranges:?}");
-        assert!(ranges.iter().all(|range| range.start % CHANGED == 0));
-        known.resize(bytes.len(), 0);
-        for range in ranges {
-            known[range.clone()].copy_from_slice(&bytes[range]);
-        }
-        assert_eq!(known, bytes);
     }
 
     #[test]

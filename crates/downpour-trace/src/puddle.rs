@@ -21,6 +21,7 @@ mod ripples;
 mod rows;
 pub mod running;
 mod wakes;
+mod wet_samples;
 
 pub(crate) use bodies::{Region, moving_triangles};
 pub use drainage::Drainage;

@@ -3,7 +3,9 @@
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, FramePasses, Gpu, GpuError, made_once, wgpu};
+use downpour_gpu::{
+    BufferSource, ComputeKernel, Dispatch, FramePasses, Gpu, GpuError, changed_ranges, made_once, wgpu,
+};
 use downpour_shaders::render::scene::{
     SKYLIGHT_KERNEL, SKYLIGHT_PASSES, TRACE_KERNEL, TRACE_SAMPLE_KERNEL, TRACE_SEEN_KERNEL,
     TRACE_STATE_BYTES, TRACE_STORAGE_BUFFERS,
@@ -587,18 +589,7 @@ fn write_changes(
 
 /// Ranges of rows that differ, in whole blocks.
 fn changed_rows(before: &[[u32; 4]], table: &[[u32; 4]]) -> Vec<Range<usize>> {
-    let mut changed: Vec<Range<usize>> = Vec::new();
-    for (k, block) in table.chunks(ROWS_PER_BLOCK).enumerate() {
-        let rows = k * ROWS_PER_BLOCK..k * ROWS_PER_BLOCK + block.len();
-        if before.get(rows.clone()) == Some(block) {
-            continue;
-        }
-        match changed.last_mut() {
-            Some(last) if last.end == rows.start => last.end = rows.end,
-            _ => changed.push(rows),
-        }
-    }
-    changed
+    changed_ranges(before, table, ROWS_PER_BLOCK, 1)
 }
 
 #[cfg(test)]

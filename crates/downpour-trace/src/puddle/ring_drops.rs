@@ -13,6 +13,7 @@ use rayon::prelude::*;
 
 use super::map::{PuddleMap, turned};
 use super::rings::{REACH_M, RainOnWater};
+use super::wet_samples::WetSamples;
 use super::{PuddleError, PuddleLook};
 
 /// Span of time whose drops are found together, s: whole sixteenths of a second.
@@ -71,6 +72,7 @@ struct Shores {
     cells: Arc<[[f32; 4]]>,
     /// In each square of the world the part in which drops may come to the water.
     squares: BTreeMap<[i64; 2], Corners>,
+    wet: WetSamples,
 }
 
 /// Drops on the water of puddles.
@@ -79,7 +81,7 @@ pub(super) struct RingDrops {
     /// Smallest diameter that is looked for, and the largest that there is, m.
     diameters: [f64; 2],
     found: BTreeMap<Block, Found>,
-    /// Of each puddle.
+    /// Of each puddle with rings.
     shores: BTreeMap<usize, Shores>,
     /// Of the maps.
     origin: DVec3,
@@ -104,6 +106,11 @@ impl RingDrops {
         self.found.values().flat_map(|found| &found.impacts)
     }
 
+    /// Area of the water with rings within reach of an eye, m^2, as it was found last.
+    pub(super) fn area_near(&self, middle: Vec2) -> f64 {
+        self.shores.values().map(|shores| shores.wet.area_near(middle)).sum()
+    }
+
     /// Finds the drops whose rings are in a picture, and some of those of the pictures to come; forgets all others.
     pub(super) fn find(
         &mut self,
@@ -117,8 +124,9 @@ impl RingDrops {
             self.origin = origin;
         }
         let mut wanted = Vec::new();
+        let mut shores_before = std::mem::take(&mut self.shores);
         for (k, (map, _)) in puddles.iter().enumerate().filter(|(_, (_, look))| look.has_rings()) {
-            let known = self.shores.remove(&k).filter(|shores| Arc::ptr_eq(&shores.cells, &map.cells));
+            let known = shores_before.remove(&k).filter(|shores| Arc::ptr_eq(&shores.cells, &map.cells));
             let shores = self.shores.entry(k).or_insert(known.unwrap_or_else(|| Shores::new(map, origin)));
             wanted.extend(blocks(k, map, shores, rain));
         }
@@ -180,7 +188,7 @@ struct Wanted {
     is_next: bool,
 }
 
-/// Pictures from that of the second of two times, s, of the last and of the present one, until the drops of a block are needed.
+/// Number of pictures until the drops of a block are needed, from the times of the last picture and of the present one, s.
 fn pictures_before(wanted: &Wanted, map: &PuddleMap, [last_s, time_s]: [f64; 2]) -> usize {
     let needed_s = wanted.block.2 as f64 * CHUNK_S - slack(map);
     let pictures = (needed_s - time_s) / (time_s - last_s);
@@ -277,6 +285,6 @@ impl Shores {
                 }
             }
         }
-        Self { cells: Arc::clone(&map.cells), squares }
+        Self { cells: Arc::clone(&map.cells), squares, wet: WetSamples::new(map) }
     }
 }

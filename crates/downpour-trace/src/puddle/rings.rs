@@ -4,7 +4,7 @@
 //! picture shows falling. The larger ones near the eye make the ring of [`DropRing`] there; all the others are in the lattice of the
 //! ripples, from which the part of the larger ones is taken off. Rings are a function of time and eye alone.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use downpour_drop::distribution::DropSizeDistribution;
@@ -15,7 +15,6 @@ use downpour_shaders::render::puddle_rings::{
     PUDDLE_RINGS_CELL, PUDDLE_RINGS_DISTANCE, PUDDLE_RINGS_DISTANCES, PUDDLE_RINGS_LIFE, PUDDLE_RINGS_ROWS,
     PUDDLE_RINGS_SIZES, PUDDLE_RINGS_TIME, PUDDLE_RINGS_TIMES,
 };
-use downpour_shaders::render::puddle_water::PUDDLE_WATER_MIN_DEPTH;
 use downpour_sim::field::RainField;
 use glam::{DVec3, Vec2, Vec3};
 use half::f16;
@@ -48,9 +47,6 @@ const BINS: u32 = 32;
 /// Smallest drop with a ring, m.
 const MIN_DIAMETER_M: f64 = 1.5e-3;
 
-/// Cells of a puddle's map that are looked at for its area, at most, along an edge.
-const AREA_SAMPLES: usize = 32;
-
 /// Drops of some diameter, with the integrals over time of their squared slope, m^2 s: of all of it, and of that of a ring.
 #[derive(Clone, Copy, Debug)]
 struct Bin {
@@ -79,18 +75,6 @@ pub struct Rings {
     smallest: f64,
     slopes: Arc<[[u32; 4]]>,
     drops: RingDrops,
-    /// Of each puddle.
-    waters: BTreeMap<usize, WetSamples>,
-}
-
-/// Points of a map that are under water: some of them, evenly spread.
-#[derive(Debug)]
-struct WetSamples {
-    cells: Arc<[[f32; 4]]>,
-    /// m from the origin of the maps.
-    points: Vec<Vec2>,
-    /// Area for which each stands, m^2.
-    area: f64,
 }
 
 /// The rain on the water of a picture.
@@ -160,7 +144,7 @@ impl Rings {
         let smallest = smallest_of(&bins, heaviest, EXPECTED_IN_CELL / area).max(MIN_DIAMETER_M);
         let slopes = slopes(&law, smallest)?.into();
         let drops = RingDrops::new([smallest, DIAMETERS_M[1]]);
-        Ok(Self { heaviest: heaviest.clone(), bins, smallest, slopes, drops, waters: BTreeMap::new() })
+        Ok(Self { heaviest: heaviest.clone(), bins, smallest, slopes, drops })
     }
 
     /// Finds the rings of a picture on puddles whose positions are relative to `origin`.
@@ -175,23 +159,16 @@ impl Rings {
     ) -> Result<RingRows, PuddleError> {
         let eye = rain.eye - origin;
         let middle = Vec2::new(eye.x as f32, eye.z as f32);
-        let with_rings = || puddles.iter().enumerate().filter(|(_, (_, look))| look.has_rings());
-        let mut before = std::mem::take(&mut self.waters);
-        self.waters = with_rings()
-            .map(|(k, (map, _))| {
-                let known = before.remove(&k).filter(|water| Arc::ptr_eq(&water.cells, &map.cells));
-                (k, known.unwrap_or_else(|| WetSamples::new(map)))
-            })
-            .collect();
-        let area: f64 = self.waters.values().map(|water| water.area_near(middle)).sum();
+        let with_rings = || puddles.iter().filter(|(_, look)| look.has_rings());
+        self.drops.find(rain, puddles, origin)?;
+        let area = self.drops.area_near(middle);
         let life = f64::from(PUDDLE_RINGS_LIFE);
         let most = EXPECTED_RINGS / (life * area.max(1.0e-6));
         let smallest = smallest_of(&self.bins, &self.heaviest, most).max(self.smallest);
-        self.drops.find(rain, puddles, origin)?;
         let corner = ((middle - REACH_M as f32) / PUDDLE_RINGS_CELL).floor() * PUDDLE_RINGS_CELL;
         let placing = Placing { time_s: rain.time_s, corner, middle };
         // Where puddles overlap, the ring is the first one's.
-        let grounds: Vec<&Ground> = with_rings().map(|(_, (map, _))| &map.ground).collect();
+        let grounds: Vec<&Ground> = with_rings().map(|(map, _)| &map.ground).collect();
         let overlap = grounds.iter().enumerate().any(|(k, a)| grounds[..k].iter().any(|b| a.may_overlap(b)));
         let mut known = HashSet::new();
         let mut placed: Vec<Placed> = Vec::new();
@@ -285,34 +262,6 @@ fn slopes(law: &TerminalSpeed, smallest: f64) -> Result<Vec<[u32; 4]>, PuddleErr
     };
     let words: Vec<u32> = all.as_chunks().0.iter().map(word).collect();
     Ok(words.as_chunks().0.to_vec())
-}
-
-impl WetSamples {
-    fn new(map: &PuddleMap) -> Self {
-        let [columns, rows] = map.size;
-        let [x_step, y_step] = map.size.map(|count| count.div_ceil(AREA_SAMPLES).max(1));
-        let mut all = 0u32;
-        let mut points = Vec::new();
-        for y in (y_step / 2..rows).step_by(y_step) {
-            for x in (x_step / 2..columns).step_by(x_step) {
-                all += 1;
-                if map.cells[y * columns + x][2] < PUDDLE_WATER_MIN_DEPTH {
-                    continue;
-                }
-                let part = |at: usize, count: usize| (at as f32 + 0.5) / count as f32;
-                let at = map.ground.position(part(x, columns), part(y, rows));
-                points.push(Vec2::new(at.x, at.z));
-            }
-        }
-        let area = f64::from(map.ground.size.x * map.ground.size.y) / f64::from(all.max(1));
-        Self { cells: Arc::clone(&map.cells), points, area }
-    }
-
-    /// Area of the water within reach of an eye, m^2.
-    fn area_near(&self, middle: Vec2) -> f64 {
-        let is_near = |at: &&Vec2| at.distance_squared(middle) < (REACH_M * REACH_M) as f32;
-        self.area * self.points.iter().filter(is_near).count() as f64
-    }
 }
 
 impl RingRows {
