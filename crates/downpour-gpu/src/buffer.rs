@@ -56,14 +56,8 @@ impl Gpu {
                 });
             }
         }
-        self.create(&format!("buffer \"{label}\""), size, |device| {
-            device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size,
-                usage: usage | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        })
+        let usage = usage | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+        self.create_buffer(&format!("buffer \"{label}\""), label, size, usage)
     }
 
     /// Writes `bytes` at the start of `buffer`, padded with zeros to a multiple of 4.

@@ -52,6 +52,8 @@ pub struct Gpu {
     queue: wgpu::Queue,
     adapter: Arc<AdapterDescription>,
     health: Arc<Health>,
+    /// Buffers that were created through any of the handles.
+    buffers_made: Arc<AtomicU64>,
     timeout: Duration,
 }
 
@@ -157,7 +159,8 @@ impl Gpu {
 
     fn assemble(device: wgpu::Device, queue: wgpu::Queue, health: Arc<Health>, timeout: Duration) -> Self {
         let adapter = AdapterDescription::new(&device.adapter_info(), device.features(), &device.limits());
-        Self { device, queue, adapter: Arc::new(adapter), health, timeout }
+        let buffers_made = Arc::default();
+        Self { device, queue, adapter: Arc::new(adapter), health, buffers_made, timeout }
     }
 
     /// The device.
@@ -176,6 +179,29 @@ impl Gpu {
     #[must_use]
     pub fn adapter(&self) -> &AdapterDescription {
         &self.adapter
+    }
+
+    /// Number of buffers that were created on the device through this handle and its clones.
+    #[must_use]
+    pub fn buffers_made(&self) -> u64 {
+        self.buffers_made.load(Ordering::Relaxed)
+    }
+
+    /// Creates a buffer on the device, and counts it.
+    ///
+    /// # Errors
+    /// As [`Gpu::create`], of which it is the only way to a buffer.
+    pub(crate) fn create_buffer(
+        &self,
+        what: &str,
+        label: &str,
+        size: u64,
+        usage: wgpu::BufferUsages,
+    ) -> Result<wgpu::Buffer, GpuError> {
+        let of = wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
+        let made = self.create(what, size, |device| device.create_buffer(&of))?;
+        self.buffers_made.fetch_add(1, Ordering::Relaxed);
+        Ok(made)
     }
 
     /// Creates an object on the device, and turns errors that wgpu reports into a [`GpuError`].

@@ -23,14 +23,8 @@ impl LossProbe {
     /// # Errors
     /// As [`LossProbe::check`], or [`GpuError::OutOfMemory`].
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let buffer = gpu.create("the probe of a device", BYTES, |device| {
-            device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("loss probe"),
-                size: BYTES,
-                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        })?;
+        let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+        let buffer = gpu.create_buffer("the probe of a device", "loss probe", BYTES, usage)?;
         let probe = Self { buffer };
         probe.check(gpu)?;
         Ok(probe)

@@ -141,6 +141,8 @@ pub struct BufferPool {
     gpu: Gpu,
     /// Labels whose buffers are kept only when they are given back.
     given_away: Vec<&'static str>,
+    /// The same of buffers of which a beginning is used.
+    given_away_with_room: Vec<&'static str>,
     kept: Mutex<Kept>,
 }
 
@@ -167,7 +169,8 @@ impl BufferPool {
     /// Creates a pool without buffers.
     #[must_use]
     pub fn new(gpu: &Gpu) -> Self {
-        Self { gpu: gpu.clone(), given_away: Vec::new(), kept: Mutex::default() }
+        let (given_away, given_away_with_room) = (Vec::new(), Vec::new());
+        Self { gpu: gpu.clone(), given_away, given_away_with_room, kept: Mutex::default() }
     }
 
     /// Sets labels whose buffers are needed longer than for the frame: they are used again only after [`BufferPool::give_back`].
@@ -177,7 +180,14 @@ impl BufferPool {
         self
     }
 
-    /// Gives back a buffer of a label of [`BufferPool::with_given_away`]: all work that uses it has been submitted.
+    /// The same of lists, whose lengths change from frame to frame: buffers have more room than was asked for.
+    #[must_use]
+    pub fn with_lists_given_away(mut self, labels: &[&'static str]) -> Self {
+        self.given_away_with_room.extend(labels);
+        self
+    }
+
+    /// Gives back a buffer of a label of [`BufferPool::with_given_away`] or [`BufferPool::with_lists_given_away`]: all work that uses it has been submitted.
     pub fn give_back(&self, label: &'static str, buffer: wgpu::Buffer) {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let returned = kept.returned.entry(label).or_default();
@@ -229,16 +239,23 @@ impl BufferSource for BufferPool {
         usage: wgpu::BufferUsages,
     ) -> Result<wgpu::Buffer, GpuError> {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        if self.given_away.contains(&label) {
+        let has_room = self.given_away_with_room.contains(&label);
+        if has_room || self.given_away.contains(&label) {
             let size = bytes.max(4).next_multiple_of(4);
+            let (wanted, most) = if has_room {
+                let wanted = self.roomy(size, usage);
+                (wanted, 2 * wanted)
+            } else {
+                (size, size)
+            };
             let returned = kept.returned.entry(label).or_default();
             // Those of another size are of pictures of another size: of no use any more.
-            returned.retain(|known| known.size() == size && known.usage().contains(usage));
+            returned.retain(|known| (size..=most).contains(&known.size()) && known.usage().contains(usage));
             if let Some(known) = returned.pop() {
                 return Ok(known);
             }
             kept.made += 1;
-            return self.gpu.empty_buffer(label, bytes, usage);
+            return self.gpu.empty_buffer(label, wanted, usage);
         }
         let nth = kept.used.get(label).copied().unwrap_or_default();
         let known = kept.buffers.get(label).and_then(|buffers| buffers.get(nth));
@@ -352,6 +369,22 @@ mod tests {
         assert_eq!(picture(128).size(), 128);
         assert_eq!(pool.made(), 3);
         assert_ne!(picture(64), first);
+    }
+
+    #[test]
+    fn lists_that_are_given_away_have_room() {
+        let pool = BufferPool::new(&noop()).with_lists_given_away(&["distances"]);
+        let list = |bytes| {
+            pool.begin_frame();
+            pool.buffer("distances", bytes, wgpu::BufferUsages::STORAGE).unwrap()
+        };
+        let first = list(1_100_000);
+        assert!(first.size() > 1_200_000);
+        // A little longer and shorter, and of another order.
+        for (bytes, is_kept) in [(1_200_000, true), (1_100_000, true), (200_000, false)] {
+            pool.give_back("distances", first.clone());
+            assert_eq!(list(bytes) == first, is_kept, "{bytes}");
+        }
     }
 
     #[test]

@@ -14,6 +14,9 @@ use crate::{Gpu, GpuError};
 /// Time that a callback may stay with another thread after the device is done.
 const CALLBACK: Duration = Duration::from_secs(5);
 
+/// Bytes below which a buffer is that of a list, rather than of a picture.
+const SMALL: u64 = 4 << 20;
+
 /// Buffers that are kept: those of some frames.
 const MAX_FREE: usize = 32;
 
@@ -51,8 +54,15 @@ impl ReadbackPool {
         self.begin_parts(gpu, &whole)
     }
 
-    /// The same of parts of buffers: ranges of bytes, multiples of 4.
-    fn begin_parts(&self, gpu: &Gpu, parts: &[(&wgpu::Buffer, Range<u64>)]) -> Result<Readback, GpuError> {
+    /// The same of parts of buffers: ranges of bytes, multiples of 4, none of them empty.
+    ///
+    /// # Errors
+    /// As [`Gpu::create`].
+    pub fn begin_parts(
+        &self,
+        gpu: &Gpu,
+        parts: &[(&wgpu::Buffer, Range<u64>)],
+    ) -> Result<Readback, GpuError> {
         let bytes = |part: &Range<u64>| part.end - part.start;
         let staging = parts.iter().map(|(_, part)| self.staging(gpu, bytes(part)));
         let staging: Vec<wgpu::Buffer> = staging.collect::<Result<_, _>>()?;
@@ -77,7 +87,7 @@ impl ReadbackPool {
         Ok(Readback { gpu: gpu.clone(), pool: self.clone(), staging, submission })
     }
 
-    /// A buffer of a size: one that is free and not twice as large, or a new one.
+    /// A buffer of a size: one that is free and not twice as large, or a new one; that of a list has room to grow.
     fn staging(&self, gpu: &Gpu, bytes: u64) -> Result<wgpu::Buffer, GpuError> {
         let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);
         let fits = |buffer: &wgpu::Buffer| (bytes..=2 * bytes.max(1 << 12)).contains(&buffer.size());
@@ -85,14 +95,9 @@ impl ReadbackPool {
             return Ok(free.swap_remove(place));
         }
         drop(free);
-        gpu.create("a readback buffer", bytes, |device| {
-            device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("readback"),
-                size: bytes,
-                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        })
+        let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+        let room = if bytes < SMALL { bytes / 4 } else { 0 };
+        gpu.create_buffer("a readback buffer", "readback", (bytes + room).next_multiple_of(4), usage)
     }
 }
 

@@ -37,14 +37,8 @@ impl<Tag> ReadbackRing<Tag> {
     /// As [`Gpu::create`].
     pub fn new(gpu: &Gpu, bytes: u64, slots: usize) -> Result<Self, GpuError> {
         let slot = |_| {
-            let buffer = gpu.create("a small readback", bytes, |device| {
-                device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some("small readback"),
-                    size: bytes,
-                    usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-                    mapped_at_creation: false,
-                })
-            })?;
+            let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+            let buffer = gpu.create_buffer("a small readback", "small readback", bytes, usage)?;
             Ok(Slot { buffer, on_its_way: None })
         };
         Ok(Self { bytes, slots: (0..slots).map(slot).collect::<Result<_, GpuError>>()? })

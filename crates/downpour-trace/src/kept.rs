@@ -3,24 +3,16 @@
 //!
 //! Changes of the scene's light by less than an eye can tell do not count: surfaces that get wetter step by step.
 
-use std::sync::Arc;
-
 use downpour_math::rng::rng_draw;
 use downpour_render::camera::Camera;
 use downpour_render::refine::{refine_shift, shifted};
 
 use crate::data::{RenderFrame, SceneData};
+use crate::scene_change::SceneChange;
 use crate::temporal::LightWindow;
-use crate::wet::{WET_ROWS_THAT_CHANGE, wet_fraction};
 
 /// Dimension of the random numbers of the frames of a plate.
 const SEED_DIMENSION: u32 = 4121;
-
-/// Change of a wetness between 0 and 1 that counts as none.
-const MIN_WETTING: f32 = 1.0 / 128.0;
-
-/// Fluxes of rain that surfaces meet, for which wetness is compared.
-const FLUXES: [f32; 3] = [1.0, 0.2, 0.04];
 
 /// Parts of a plate that stay for later pictures, and those that earlier ones have left for it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -65,7 +57,7 @@ impl<T> KeptPlate<T> {
         bytemuck::bytes_of(&self.frame) == bytemuck::bytes_of(&seedless(frame))
             && has_ripples_alike(&self.scene, scene)
             && self.scene.glazing_rows() == scene.glazing_rows()
-            && is_lit_alike(&self.scene, scene)
+            && SceneChange::between(&self.scene, scene) == SceneChange::default()
     }
 
     /// Number of frames that its picture is the mean of.
@@ -109,51 +101,6 @@ fn has_ripples_alike(before: &SceneData, scene: &SceneData) -> bool {
 #[cfg(not(feature = "wgpu"))]
 fn has_ripples_alike(_: &SceneData, _: &SceneData) -> bool {
     true
-}
-
-/// True if two scenes are lit alike: what they share is the same memory, and their tables are equal but for a wetness that nobody can
-/// tell. Ripples on a device, and rain on panes, are not looked at.
-pub(crate) fn is_lit_alike(before: &SceneData, scene: &SceneData) -> bool {
-    let shares = Arc::ptr_eq(&before.nodes, &scene.nodes)
-        && Arc::ptr_eq(&before.triangles, &scene.triangles)
-        && Arc::ptr_eq(&before.corners, &scene.corners)
-        && Arc::ptr_eq(&before.texels, &scene.texels)
-        && Arc::ptr_eq(&before.sky, &scene.sky);
-    let rows = |scene: &SceneData| {
-        let (wet, panes) = (scene.wetness as usize, scene.glazing as usize);
-        let skipped = if wet > 0 { wet..wet + WET_ROWS_THAT_CHANGE } else { 0..0 };
-        (skipped, panes..panes + scene.glazing_rows().len(), scene.table.len())
-    };
-    if !shares || rows(before) != rows(scene) {
-        return false;
-    }
-    let maps = before.shared.iter().zip(&scene.shared);
-    if before.shared.len() != scene.shared.len()
-        || !maps.into_iter().all(|(a, b)| a.is(b) || a.rows() == b.rows())
-    {
-        return false;
-    }
-    let (skipped, panes, _) = rows(scene);
-    let (table, other) = (&scene.table, &before.table);
-    // In their order in the table.
-    let mut first = 0;
-    for part in [&skipped, &panes].into_iter().filter(|part| !part.is_empty()) {
-        if table[first..part.start] != other[first..part.start] {
-            return false;
-        }
-        first = part.end;
-    }
-    if table[first..] != other[first..] {
-        return false;
-    }
-    if skipped.is_empty() {
-        return true;
-    }
-    let wetness = |scene: &SceneData| {
-        let wet = scene.wet_load();
-        FLUXES.map(|flux| wet_fraction(wet.before, wet.kept, wet.since, flux))
-    };
-    wetness(before).iter().zip(wetness(scene)).all(|(a, b)| (a - b).abs() <= MIN_WETTING)
 }
 
 #[cfg(test)]
@@ -210,9 +157,9 @@ mod tests {
         let mut later = scene.clone();
         later.set_glazing(&row(1.1));
         assert!(plate.shows(&scene, &frame) && !plate.shows(&later, &frame));
-        assert!(is_lit_alike(&scene, &later));
+        assert_eq!(SceneChange::between(&scene, &later), SceneChange::default());
         later.set_glazing(&[]);
-        assert!(!is_lit_alike(&scene, &later) && later.glazing == 0);
+        assert!(SceneChange::between(&scene, &later).rest && later.glazing == 0);
     }
 
     #[test]

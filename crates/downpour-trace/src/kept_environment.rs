@@ -1,7 +1,8 @@
 //! An environment map that stays from picture to picture: while only its eye moves, a part of its rows is traced anew for each picture,
 //! and no row is older than a few pictures. Drops show the map much smaller than it is, so that nobody can tell.
 //!
-//! A jump of the eye, another light or another size makes all rows anew.
+//! A jump of the eye, another light or another size makes all rows anew. Where surfaces get wetter and puddles rise, rows follow in their
+//! turn; waves on puddles are smaller than drops can show.
 
 use std::ops::Range;
 
@@ -11,7 +12,7 @@ use downpour_render::rain::{EnvironmentFrame, RefractionForm};
 use glam::Vec3;
 
 use crate::data::{RenderFrame, SceneData};
-use crate::kept::is_lit_alike;
+use crate::scene_change::SceneChange;
 
 /// Bands of rows of a map.
 const BANDS: u32 = 8;
@@ -30,6 +31,8 @@ pub struct KeptEnvironment<T> {
     environment: EnvironmentFrame,
     /// Eye of each band of rows, once it is traced.
     eyes: Vec<Option<Vec3>>,
+    /// Bands that show the scene before its water has changed.
+    is_old: Vec<bool>,
     /// The band that is the next one to be traced.
     next: usize,
     /// The texels.
@@ -46,6 +49,7 @@ impl<T> KeptEnvironment<T> {
             frame: poseless(frame),
             environment: *environment,
             eyes: vec![None; count],
+            is_old: vec![false; count],
             next: 0,
             held,
         }
@@ -69,17 +73,24 @@ impl<T> KeptEnvironment<T> {
         is_alike
             && bytemuck::bytes_of(&self.frame) == bytemuck::bytes_of(&poseless(frame))
             && self.eyes.iter().all(is_near)
-            && is_lit_alike(&self.scene, scene)
+            && !SceneChange::between(&self.scene, scene).rest
     }
 
-    /// The rows that are to be traced for a picture of an eye: all at first, then some of those that another eye has seen.
-    pub fn next(&mut self, eye: Vec3) -> Vec<Range<u32>> {
+    /// The rows that are to be traced for a picture of an eye in a scene that fits: all at first, then some of those that another eye
+    /// has seen, or that show less water.
+    pub fn next(&mut self, scene: &SceneData, eye: Vec3) -> Vec<Range<u32>> {
+        let change = SceneChange::between(&self.scene, scene);
+        if change.water || change.wetness {
+            self.scene = scene.clone();
+            self.is_old.fill(true);
+        }
         let count = self.eyes.len();
         let is_first = self.eyes.iter().all(Option::is_none);
         let most = if is_first { count } else { BANDS_PER_PICTURE };
         let from = self.next;
-        let old = (from..from + count).map(|band| band % count).filter(|&band| self.eyes[band] != Some(eye));
-        let mut bands: Vec<usize> = old.take(most).collect();
+        let is_wanted = |band: &usize| self.is_old[*band] || self.eyes[*band] != Some(eye);
+        let wanted = (from..from + count).map(|band| band % count).filter(is_wanted);
+        let mut bands: Vec<usize> = wanted.take(most).collect();
         if let Some(last) = bands.last() {
             self.next = (last + 1) % count;
         }
@@ -88,6 +99,7 @@ impl<T> KeptEnvironment<T> {
         let mut traced: Vec<Range<u32>> = Vec::new();
         for band in bands {
             self.eyes[band] = Some(eye);
+            self.is_old[band] = false;
             let first = band as u32 * rows;
             let end = (first + rows).min(self.environment.size);
             match traced.last_mut() {
@@ -121,8 +133,10 @@ mod tests {
     use super::*;
     use downpour_render::camera::Viewpoint;
     use downpour_render::rain::RainOptions;
+    use glam::Vec2;
 
     use crate::builder::SceneBuilder;
+    use crate::puddle::{Ground, PuddleLook, PuddleMap, PuddleRows};
     use crate::sky_light::SkyLight;
 
     fn frame_of(scene: &SceneData, eye: Vec3, forward: Vec3, seed: u64) -> RenderFrame {
@@ -148,20 +162,20 @@ mod tests {
 
     #[test]
     fn all_rows_come_round() {
-        let Begun { layout, mut map, .. } = begun();
-        assert_eq!(map.next(Vec3::ZERO), vec![Range { start: 0, end: layout.size }]);
-        assert!(map.next(Vec3::ZERO).is_empty());
+        let Begun { scene, layout, mut map, .. } = begun();
+        assert_eq!(map.next(&scene, Vec3::ZERO), vec![Range { start: 0, end: layout.size }]);
+        assert!(map.next(&scene, Vec3::ZERO).is_empty());
         // Four pictures of an eye that has moved make all of it anew, and then nothing is left to do.
         let eye = Vec3::new(0.1, 0.0, 0.0);
-        let mut rows: Vec<u32> = (0..4).flat_map(|_| map.next(eye).into_iter().flatten()).collect();
+        let mut rows: Vec<u32> = (0..4).flat_map(|_| map.next(&scene, eye).into_iter().flatten()).collect();
         rows.sort_unstable();
         assert_eq!(rows, (0..layout.size).collect::<Vec<u32>>());
-        assert!(map.next(eye).is_empty());
+        assert!(map.next(&scene, eye).is_empty());
         // While the eye goes on moving, each row has its turn as well.
         let mut last = vec![0; layout.size as usize];
         for step in 1..20u32 {
             let eye = Vec3::new(0.1 + 0.01 * step as f32, 0.0, 0.0);
-            for row in map.next(eye).into_iter().flatten() {
+            for row in map.next(&scene, eye).into_iter().flatten() {
                 last[row as usize] = step;
             }
             assert!(step < 4 || last.iter().all(|traced| step - traced < 4), "{step}: {last:?}");
@@ -171,7 +185,7 @@ mod tests {
     #[test]
     fn a_map_goes_on_while_only_its_eye_moves() {
         let Begun { scene, frame, layout, mut map } = begun();
-        map.next(Vec3::ZERO);
+        map.next(&scene, Vec3::ZERO);
         // It turns and walks; a jump is too far.
         for (eye, fits) in [(Vec3::ZERO, true), (Vec3::X * 0.3, true), (Vec3::X, false)] {
             let moved = frame_of(&scene, eye, Vec3::X, 2);
@@ -183,5 +197,45 @@ mod tests {
         assert!(!map.fits(&scene, &frame, &smaller));
         let brighter = SceneBuilder::new().build(&SkyLight::uniform([2.0; 3]));
         assert!(!map.fits(&brighter, &frame, &layout));
+    }
+
+    /// Water that rises is shown a few pictures later; waves on it are not.
+    #[test]
+    fn rows_follow_the_water() {
+        let Begun { mut scene, frame, layout, .. } = begun();
+        let ground = Ground { middle: Vec3::ZERO, size: Vec2::splat(2.0), turn: 0.0, reach: 0.2 };
+        let filled = |depth: f32| PuddleMap {
+            ground,
+            size: [2, 2],
+            cells: vec![[0.0, 0.0, depth, 1.0]; 4].into(),
+            flow: None,
+        };
+        let set = |scene: &mut SceneData, depth: f32, time_s: f64, look: PuddleLook| {
+            scene.set_puddles(&PuddleRows {
+                puddles: &[(filled(depth), look)],
+                shape: (0, 1, 0.1),
+                slopes: &[],
+                shift: Vec3::ZERO,
+                rings: None,
+                wakes: &[],
+                time_s,
+            });
+        };
+        let look = PuddleLook::default();
+        set(&mut scene, 0.01, 0.0, look);
+        let mut map = KeptEnvironment::new(&scene, &frame, &layout, ());
+        let mut rows = |scene: &SceneData| {
+            assert!(map.fits(scene, &frame, &layout));
+            let rows = |_| map.next(scene, Vec3::ZERO).into_iter().flatten().count() as u32;
+            (0..6).map(rows).collect::<Vec<u32>>()
+        };
+        let (all, part) = (layout.size, layout.size / 4);
+        assert_eq!(rows(&scene), [all, 0, 0, 0, 0, 0]);
+        set(&mut scene, 0.01, 0.37, look);
+        assert_eq!(rows(&scene), [0; 6], "water that runs");
+        set(&mut scene, 0.02, 0.37, look);
+        assert_eq!(rows(&scene), [part, part, part, part, 0, 0], "water that rises");
+        set(&mut scene, 0.02, 0.37, PuddleLook { influence: 0.3, ..look });
+        assert_eq!(rows(&scene), [part, part, part, part, 0, 0], "another look");
     }
 }

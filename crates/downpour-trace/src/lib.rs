@@ -57,6 +57,7 @@ mod scatter;
 #[doc(hidden)]
 pub mod scatter;
 pub mod scene;
+mod scene_change;
 pub mod shared_rows;
 #[cfg(not(feature = "parity"))]
 mod sky;

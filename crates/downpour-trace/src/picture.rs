@@ -113,7 +113,7 @@ pub fn render_picture_on(
         let held = EnvironmentMap { texels: Vec::new() };
         KeptEnvironment::new(scene, &frame, &rain.environment, held)
     }));
-    let rows = map.next(camera.eye);
+    let rows = map.next(scene, camera.eye);
     if !rows.is_empty() {
         timed(&mut passes, "capture", || trace_rows(&mut map.held, scene, &frame, &rain.environment, rows));
     }

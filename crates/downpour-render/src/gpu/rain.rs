@@ -158,8 +158,13 @@ impl RainPipeline {
     /// # Errors
     /// As [`RainPipeline::upload`].
     pub fn environment(&self, buffers: &impl BufferSource, rain: &Rain) -> Result<wgpu::Buffer, GpuError> {
-        let bytes = u64::from(rain.environment.texels()) * 16;
-        buffers.buffer("environment map", bytes, wgpu::BufferUsages::STORAGE)
+        buffers.buffer("environment map", Self::environment_bytes(rain), wgpu::BufferUsages::STORAGE)
+    }
+
+    /// Size of that buffer, bytes.
+    #[must_use]
+    pub fn environment_bytes(rain: &Rain) -> u64 {
+        u64::from(rain.environment.texels()) * 16
     }
 
     /// Makes ready to draw drops over a plate, with buffers from `buffers`. `lights` are the lamps of `rain` on the drops, and those

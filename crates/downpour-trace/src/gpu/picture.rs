@@ -70,17 +70,11 @@ impl From<GpuSimError> for GpuPictureError {
 }
 
 /// Labels of the buffers that a picture keeps.
-const GIVEN_AWAY: [&str; 9] = [
-    "picture",
-    "rain",
-    "environment map",
-    "distances of drops",
-    "glow",
-    "display picture",
-    TICKS,
-    FRAME_LIGHT[0],
-    FRAME_LIGHT[1],
-];
+const GIVEN_AWAY: [&str; 8] =
+    ["picture", "rain", "environment map", "glow", "display picture", TICKS, FRAME_LIGHT[0], FRAME_LIGHT[1]];
+
+/// That of the list among them.
+const DISTANCES: &str = "distances of drops";
 
 /// Labels of the buffers with the light of a frame of a clip.
 const FRAME_LIGHT: [&str; 2] = ["light of a frame", "means of light of a frame"];
@@ -113,13 +107,35 @@ pub struct PictureRenderer {
     /// Its masks.
     masks: Arc<Mutex<Option<RainOnGpu>>>,
     /// The plate of the last picture, if it was to be kept.
-    plate: Arc<Mutex<Option<KeptPlate<wgpu::Buffer>>>>,
+    plate: Arc<Mutex<Option<KeptPlate<KeptBuffer>>>>,
     /// The environment map of the last picture, if it was to be kept.
-    environment: Arc<Mutex<Option<KeptEnvironment<wgpu::Buffer>>>>,
+    environment: Arc<Mutex<Option<KeptEnvironment<KeptBuffer>>>>,
     /// The light of the rain of the last picture, with its frame without a seed, if it was to be kept.
     light: Arc<Mutex<Option<(RenderFrame, KeptLight)>>>,
     /// Light of sky and surfaces in the last frames of a clip.
     history: Arc<Mutex<LightHistory<LightOnGpu>>>,
+}
+
+/// A buffer that stays from picture to picture.
+#[derive(Debug)]
+struct KeptBuffer {
+    buffer: wgpu::Buffer,
+    /// Pictures that show it and that nobody has begun to read have the other handles.
+    shown: Arc<()>,
+}
+
+impl KeptBuffer {
+    /// A buffer of `bytes` bytes: the last one, if it is as large and all pictures that show it are on their way; else a new one.
+    fn after(
+        last: Option<Self>,
+        bytes: u64,
+        make: impl FnOnce() -> Result<wgpu::Buffer, GpuError>,
+    ) -> Result<Self, GpuError> {
+        match last.filter(|last| last.buffer.size() == bytes && Arc::strong_count(&last.shown) == 1) {
+            Some(last) => Ok(last),
+            None => Ok(Self { buffer: make()?, shown: Arc::default() }),
+        }
+    }
 }
 
 /// Use of a picture.
@@ -147,7 +163,9 @@ impl PictureRenderer {
             tone: TonePipeline::new(gpu)?,
             fields: FieldPipeline::new(gpu)?,
             // A picture may be read after the next one is begun.
-            pool: Arc::new(BufferPool::new(gpu).with_given_away(&GIVEN_AWAY)),
+            pool: Arc::new(
+                BufferPool::new(gpu).with_given_away(&GIVEN_AWAY).with_lists_given_away(&[DISTANCES]),
+            ),
             drawing: Arc::default(),
             readbacks: ReadbackPool::default(),
             queries: Arc::default(),
@@ -224,7 +242,7 @@ impl PictureRenderer {
         let pool = &*self.pool;
         pool.begin_frame();
         let mut passes = FramePasses::after(&self.queries, pool, MAX_PASSES)?;
-        let made_before = pool.made();
+        let made_before = self.gpu.buffers_made();
         let uploaded =
             passes.host("upload", || Ok::<_, GpuError>((self.upload(scene)?, self.upload_masks(masks)?)))?;
         if let Some(ripples) = uploaded.0.ripples(pool)? {
@@ -238,11 +256,13 @@ impl PictureRenderer {
         let mut kept = self.plate.lock().unwrap_or_else(PoisonError::into_inner);
         // After an error there is none. Pictures that keep none leave that of others alone.
         let last = if of.plate.kept_frames > 0 { kept.take() } else { None };
-        let known = last.filter(|plate| plate.shows(scene, &frame));
-        let mut stays = match (of.plate.kept_frames, known) {
+        let mut stays = match (of.plate.kept_frames, last) {
             (0, _) => None,
-            (_, Some(known)) => Some(known),
-            (_, None) => Some(KeptPlate::new(scene, &frame, self.mean_of_pictures(&camera)?)),
+            (_, Some(last)) if last.shows(scene, &frame) => Some(last),
+            (_, last) => {
+                let mean = self.mean_of_pictures(&camera, last.map(|plate| plate.held))?;
+                Some(KeptPlate::new(scene, &frame, mean))
+            }
         };
         let next = match stays.as_mut() {
             Some(plate) => plate.next(&frame, of.plate.kept_frames),
@@ -252,13 +272,16 @@ impl PictureRenderer {
         let frame = if next.is_none() { frame.with_ray_spacing(1) } else { frame };
         // Buffers that are given back when the picture has been read.
         let mut layers: Vec<(&'static str, wgpu::Buffer)> = Vec::new();
-        let mut clean = stays.as_ref().map(|plate| plate.held.clone());
+        let mut clean = stays.as_ref().map(|plate| plate.held.buffer.clone());
         let mut around = self.environment.lock().unwrap_or_else(PoisonError::into_inner);
         let environment = self.environment_map(of.plate, scene, &frame, &rain, &mut around)?;
         if of.plate.kept_frames == 0 {
             layers.push(("environment map", environment.0.clone()));
         }
         let around_kept = if of.plate.kept_frames > 0 { around.take() } else { None };
+        let kept_buffers =
+            [stays.as_ref().map(|plate| &plate.held), around_kept.as_ref().map(|map| &map.held)];
+        let shown = kept_buffers.map(|kept| kept.map(|kept| Arc::clone(&kept.shown)));
         let plate = self.scene.plate_around(pool, &uploaded.0, &frame, &rain, environment)?;
         let captured = plate.finest();
         let stands_still = next.is_none() && captured.is_empty();
@@ -360,7 +383,7 @@ impl PictureRenderer {
         };
         let found = search.map(begin).transpose()?;
         layers.push(("rain", layer.clone()));
-        layers.push(("distances of drops", distances.clone()));
+        layers.push((DISTANCES, distances.clone()));
         layers.extend(glow.iter().map(|glow| ("glow", glow.clone())));
         layers.extend(pixels.iter().map(|pixels| ("display picture", pixels.clone())));
         layers.extend(ticks.iter().map(|ticks| (TICKS, ticks.clone())));
@@ -370,7 +393,8 @@ impl PictureRenderer {
             *light = kept_light.map(|light| (seedless(&frame), light));
         }
         drop((kept, around, light));
-        let device = DeviceUse { bytes_uploaded: pool.written(), buffers_made: pool.made() - made_before };
+        let device =
+            DeviceUse { bytes_uploaded: pool.written(), buffers_made: self.gpu.buffers_made() - made_before };
         Ok(PictureOnGpu {
             gpu: self.gpu.clone(),
             readbacks: self.readbacks.clone(),
@@ -382,6 +406,7 @@ impl PictureRenderer {
             found,
             distances,
             clean,
+            _shown: shown,
             layer,
             glow,
             environment,
@@ -503,7 +528,7 @@ impl PictureRenderer {
         scene: &SceneData,
         frame: &RenderFrame,
         rain: &Rain,
-        kept: &mut Option<KeptEnvironment<wgpu::Buffer>>,
+        kept: &mut Option<KeptEnvironment<KeptBuffer>>,
     ) -> Result<(wgpu::Buffer, Vec<Range<u32>>), GpuError> {
         let layout = &rain.environment;
         if of.kept_frames == 0 {
@@ -512,18 +537,24 @@ impl PictureRenderer {
                 std::iter::once(0..layout.size).collect(),
             ));
         }
-        let map = match kept.take().filter(|map| map.fits(scene, frame, layout)) {
-            Some(map) => map,
-            None => KeptEnvironment::new(scene, frame, layout, self.rain.environment(&self.gpu, rain)?),
+        let map = match kept.take() {
+            Some(map) if map.fits(scene, frame, layout) => map,
+            last => {
+                let bytes = RainPipeline::environment_bytes(rain);
+                let make = || self.rain.environment(&self.gpu, rain);
+                let held = KeptBuffer::after(last.map(|map| map.held), bytes, make)?;
+                KeptEnvironment::new(scene, frame, layout, held)
+            }
         };
         let map = kept.insert(map);
-        Ok((map.held.clone(), map.next(frame.camera.eye)))
+        Ok((map.held.buffer.clone(), map.next(scene, frame.camera.eye)))
     }
 
-    /// Buffer of a plate that stays.
-    fn mean_of_pictures(&self, camera: &Camera) -> Result<wgpu::Buffer, GpuError> {
-        let pixels = u64::from(camera.width) * u64::from(camera.height);
-        self.gpu.empty_buffer("mean of pictures", 16 * pixels, wgpu::BufferUsages::STORAGE)
+    /// A buffer for the plate of a camera.
+    fn mean_of_pictures(&self, camera: &Camera, last: Option<KeptBuffer>) -> Result<KeptBuffer, GpuError> {
+        let bytes = 16 * u64::from(camera.width) * u64::from(camera.height);
+        let make = || self.gpu.empty_buffer("mean of pictures", bytes, wgpu::BufferUsages::STORAGE);
+        KeptBuffer::after(last, bytes, make)
     }
 
     /// Frequencies of drops in some fluids on the device: those of the last picture, if they are the same.
@@ -551,6 +582,8 @@ pub struct PictureOnGpu {
     found: Option<FoundReadback>,
     distances: wgpu::Buffer,
     clean: wgpu::Buffer,
+    /// Of the plate and of the environment map, if they stay.
+    _shown: [Option<Arc<()>>; 2],
     layer: wgpu::Buffer,
     glow: Option<wgpu::Buffer>,
     environment: wgpu::Buffer,
@@ -599,10 +632,10 @@ impl PictureOnGpu {
     /// Returns the error of the GPU.
     pub fn begin_read(self) -> Result<PictureReadback, GpuError> {
         let Self { pool, pace, samples, rain, count, found, times, passes, device, .. } = self;
-        let mut buffers = vec![&self.distances, &self.clean, &self.layer, &self.environment];
+        let mut buffers = vec![&self.clean, &self.layer, &self.environment];
         buffers.extend(&self.glow);
         buffers.extend(&self.ticks);
-        let read = self.readbacks.begin(&self.gpu, &buffers)?;
+        let read = begin_read(&self.readbacks, &self.gpu, (&self.distances, count), &buffers)?;
         let (has_ticks, has_glow) = (self.ticks.is_some(), self.glow.is_some());
         give_back(&pool, self.layers);
         Ok(PictureReadback {
@@ -627,9 +660,9 @@ impl PictureOnGpu {
     /// Returns the error of the GPU.
     pub fn begin_display(self) -> Result<Option<DisplayReadback>, GpuError> {
         let Some(pixels) = &self.pixels else { return Ok(None) };
-        let mut buffers = vec![&self.distances, pixels];
+        let mut buffers = vec![pixels];
         buffers.extend(&self.ticks);
-        let read = self.readbacks.begin(&self.gpu, &buffers)?;
+        let read = begin_read(&self.readbacks, &self.gpu, (&self.distances, self.count), &buffers)?;
         give_back(&self.pool, self.layers);
         Ok(Some(DisplayReadback {
             size: self.rain.frame.camera.size(),
@@ -682,6 +715,20 @@ impl PictureReadback {
 /// The buffer and the places of a list that the device makes, with its making.
 fn listed(pass: FallingPass<'_>) -> (wgpu::Buffer, u32, Option<FallingPass<'_>>) {
     (pass.list().drops().clone(), pass.list().places(), Some(pass))
+}
+
+/// Begins to read the distances of so many drops, and the whole of other buffers.
+fn begin_read(
+    readbacks: &ReadbackPool,
+    gpu: &Gpu,
+    (distances, count): (&wgpu::Buffer, usize),
+    others: &[&wgpu::Buffer],
+) -> Result<Readback, GpuError> {
+    // Nothing is no part of a buffer.
+    let of_drops = (4 * count.max(1) as u64).min(distances.size());
+    let mut parts = vec![(distances, 0..of_drops)];
+    parts.extend(others.iter().map(|buffer| (*buffer, 0..buffer.size())));
+    readbacks.begin_parts(gpu, &parts)
 }
 
 /// Gives buffers back to a pool: what writes them next is submitted after the copies.

@@ -442,26 +442,34 @@ impl SceneOnGpu {
         table: wgpu::Buffer,
     ) -> Result<Self, GpuError> {
         let still = before.and_then(|before| scene.still_ranges(&before.of)).unwrap_or_default();
+        let own = scene.still_ranges(scene).unwrap_or_default();
         macro_rules! buffer {
-            ($field:ident, $label:literal, $still:expr) => {
+            ($field:ident, $label:literal) => {
                 match before {
                     Some(before) if Arc::ptr_eq(&before.of.$field, &scene.$field) => before.$field.clone(),
                     // What moves is written over what it was.
-                    Some(before) if !$still.is_empty() && before.of.$field.len() == scene.$field.len() => {
-                        write_around(buffers, &before.$field, &scene.$field, $still);
+                    Some(before)
+                        if !still.$field.is_empty() && has_room_for(&before.$field, &scene.$field) =>
+                    {
+                        write_around(buffers, &before.$field, &scene.$field, still.$field.clone());
                         before.$field.clone()
                     }
-                    _ => on_device(buffers, $label, &scene.$field)?,
+                    // There is room for twice as much that moves.
+                    _ => on_device(buffers, $label, &scene.$field, own.$field.clone())?,
                 }
             };
         }
+        let sky = match before {
+            Some(before) if before.of.sky == scene.sky => before.sky.clone(),
+            _ => on_device(buffers, "scene sky", &scene.sky, 0..0)?,
+        };
         Ok(Self {
-            nodes: buffer!(nodes, "scene nodes", still.nodes),
-            triangles: buffer!(triangles, "scene triangles", still.triangles),
-            corners: buffer!(corners, "scene corners", still.corners),
+            nodes: buffer!(nodes, "scene nodes"),
+            triangles: buffer!(triangles, "scene triangles"),
+            corners: buffer!(corners, "scene corners"),
             table,
-            texels: buffer!(texels, "scene texels", still.texels),
-            sky: buffer!(sky, "scene sky", 0..0),
+            texels: buffer!(texels, "scene texels"),
+            sky,
             of: scene.clone(),
         })
     }
@@ -516,16 +524,27 @@ impl SceneOnGpu {
     }
 }
 
-/// A storage buffer with some data.
+/// A storage buffer with some data, with room for as much again as what is not in `still`, if anything stands still.
 fn on_device<T: bytemuck::Pod>(
     buffers: &impl BufferSource,
     label: &'static str,
     data: &[T],
+    still: Range<usize>,
 ) -> Result<wgpu::Buffer, GpuError> {
     let bytes: &[u8] = bytemuck::cast_slice(data);
-    let buffer = buffers.gpu().empty_buffer(label, bytes.len() as u64, wgpu::BufferUsages::STORAGE)?;
+    let moving = if still.is_empty() { 0 } else { data.len() - still.len() };
+    let wanted = (bytes.len() + moving * size_of::<T>()) as u64;
+    let limits = buffers.gpu().device().limits();
+    let most = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
+    let size = if wanted <= most { wanted } else { bytes.len() as u64 };
+    let buffer = buffers.gpu().empty_buffer(label, size, wgpu::BufferUsages::STORAGE)?;
     buffers.write(&buffer, bytes);
     Ok(buffer)
+}
+
+/// True if some data are no larger than a buffer.
+fn has_room_for<T>(buffer: &wgpu::Buffer, data: &[T]) -> bool {
+    size_of_val(data) as u64 <= buffer.size()
 }
 
 /// Writes the elements of a buffer but those in `still`, which are there.
