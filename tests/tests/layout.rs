@@ -131,7 +131,7 @@ fn hosts() -> Vec<Host> {
             first_time, slices, longest, chance, restitution, grip, size, model, slack, parts, first, room, unused),
         host!(BounceParts as "BounceParts" in &sim::bounce::BOUNCE, count, drops),
         host!(ShelterFrame as "ShelterFrame" in &sim::field::SHELTER,
-            eye, half_shutter, low, since_cut, high, cuts, room, first, unused_1, unused_2),
+            eye, half_shutter, low, since_cut, high, cuts, room, first, stopped, unused),
         host!(ProjectFrame as "ProjectFrame" in &render::rain::PROJECT,
             camera, eye_velocity, shutter, turning, aperture, amplitudes, inverse_focus, streaks, seed, ticks,
             time_offset, count, room, is_fading, small_are_round, has_axes, unused_1, unused),

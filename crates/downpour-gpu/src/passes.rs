@@ -21,6 +21,8 @@ pub struct FramePasses {
     times: Vec<(&'static str, PassEnd)>,
     /// Passes that are not submitted yet: each command buffer and each submission costs the host as much as some passes.
     recorded: Option<wgpu::CommandEncoder>,
+    /// True if the parts of a pass are submitted together.
+    is_short: bool,
 }
 
 /// Timestamps of a device's frames, which one frame after the other uses.
@@ -81,7 +83,22 @@ impl FramePasses {
         } else {
             None
         };
-        Ok(Self { gpu: gpu.clone(), clock, times: Vec::new(), recorded: None })
+        Ok(Self { gpu: gpu.clone(), clock, times: Vec::new(), recorded: None, is_short: false })
+    }
+
+    /// Sets whether the whole frame takes the device less time than a driver allows one submission: then what would be submitted by
+    /// itself goes with the rest.
+    #[must_use]
+    pub fn with_short(self, is_short: bool) -> Self {
+        Self { is_short, ..self }
+    }
+
+    /// Submits the passes so far: the device works on them while the host records the next ones.
+    ///
+    /// # Errors
+    /// As [`Gpu::submit`].
+    pub fn flush(&mut self) -> Result<(), GpuError> {
+        submit(&self.gpu, &mut self.recorded)
     }
 
     /// Notes the time of other work, ms.
@@ -115,7 +132,8 @@ impl FramePasses {
         self.run_parts(name, &[&stages], false)
     }
 
-    /// Submits a pass, each dispatch by itself: drivers reset a device that is busy with one submission for too long.
+    /// Submits a pass, each dispatch by itself unless the frame is short: drivers reset a device that is busy with one submission for too
+    /// long.
     ///
     /// # Errors
     /// As [`FramePasses::run`].
@@ -163,7 +181,7 @@ impl FramePasses {
             };
             let encoder = encoder(&self.gpu, &mut self.recorded)?;
             self.gpu.record_in(encoder, part, Some(timestamps))?;
-            if apart {
+            if apart && !self.is_short {
                 submit(&self.gpu, &mut self.recorded)?;
             }
             if k % WAIT_EVERY == WAIT_EVERY - 1 {

@@ -19,6 +19,7 @@ mod tests;
 use downpour_math::color::color_luminance;
 use downpour_math::in_range;
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use downpour_scene::scene::Pose;
 use downpour_sim::field::FallingDrop;
@@ -31,7 +32,7 @@ use crate::data::SceneData;
 use crate::glazing;
 use crate::impostor;
 use crate::sky_light::SkyLight;
-use crate::wet::SceneWetness;
+use crate::wet::{KnownFall, SceneWetness};
 use downpour_render::RenderError;
 use downpour_render::camera::{EyeMotion, MAX_EXPOSURE_S, PictureEdge, Viewpoint, check_size};
 use downpour_render::tone::{GRAY, tone_automatic_exposure};
@@ -97,6 +98,8 @@ pub struct FrameScene {
     pub left_out: usize,
     /// What of a scene that moves is the same at all times.
     kept: Option<KeptScene>,
+    /// Of the rain that wets it.
+    fall: Arc<KnownFall>,
 }
 
 /// Sets light and water on surfaces to a time in seconds, and their reflections, which also depend on the eye.
@@ -109,9 +112,10 @@ fn set_time(
     loaded: &Loaded,
     (origin, viewpoint): (DVec3, &Viewpoint),
     time_s: f64,
+    fall: &KnownFall,
 ) -> Result<(), RenderError> {
     light::relight(data, weather, loaded, origin, time_s);
-    data.set_wetness(SceneWetness::of(weather, time_s, origin).as_ref());
+    data.set_wetness(SceneWetness::of_falling(weather, time_s, origin, fall).as_ref());
     data.set_glazing(&glazing::rows(weather, &loaded.scene, time_s, origin));
     let before = data.impostors.take();
     if let (WetReflections::Tatarchuk2006 { edge }, true) =
@@ -129,7 +133,7 @@ impl FrameScene {
     /// [`FrameSceneError::OverLimit`] above [`MAX_TRIANGLES`] or [`MAX_LIGHTS`], [`FrameSceneError::Memory`], or
     /// [`RenderError`]: a picture outside [`PIXELS`](downpour_render::camera::PIXELS), a time beyond [`LATEST_S`], or an invalid camera.
     pub fn new(weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, FrameSceneError> {
-        Self::with_kept(weather, loaded, time_s, None)
+        Self::with_kept(weather, loaded, time_s, None, Arc::default())
     }
 
     /// The same scene, which moves, at another time in seconds: materials, textures and what stands still are those of this one.
@@ -137,7 +141,7 @@ impl FrameScene {
     /// # Errors
     /// As [`FrameScene::new`].
     pub fn moved(&self, weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, FrameSceneError> {
-        Self::with_kept(weather, loaded, time_s, self.kept.as_ref())
+        Self::with_kept(weather, loaded, time_s, self.kept.as_ref(), Arc::clone(&self.fall))
     }
 
     fn with_kept(
@@ -145,6 +149,7 @@ impl FrameScene {
         loaded: &Loaded,
         time_s: f64,
         kept: Option<&KeptScene>,
+        fall: Arc<KnownFall>,
     ) -> Result<Self, FrameSceneError> {
         check_size(weather.size)?;
         in_range("time", time_s, "s", &(-LATEST_S..=LATEST_S), 1.0, "-1e6 to 1e6")
@@ -184,7 +189,7 @@ impl FrameScene {
         set_fov(&mut viewpoint, weather, time_s);
         // An invalid camera is reported here, before the work begins.
         viewpoint.axes()?;
-        set_time(&mut data, weather, loaded, (origin, &viewpoint), time_s)?;
+        set_time(&mut data, weather, loaded, (origin, &viewpoint), time_s, &fall)?;
         Ok(Self {
             data,
             viewpoint,
@@ -201,6 +206,7 @@ impl FrameScene {
             has_sun: loaded.sun.is_some(),
             left_out: pose.left_out,
             kept,
+            fall,
         })
     }
 
@@ -213,7 +219,7 @@ impl FrameScene {
             let mut frame_scene = Self { shutter_s: weather.drop_exposure_s(time_s), ..self.clone() };
             set_fov(&mut frame_scene.viewpoint, weather, time_s);
             let eye = (self.origin, &frame_scene.viewpoint);
-            set_time(&mut frame_scene.data, weather, loaded, eye, time_s)?;
+            set_time(&mut frame_scene.data, weather, loaded, eye, time_s, &self.fall)?;
             return Ok(frame_scene);
         };
         let distance_m = (seen.eye - self.origin).abs().max_element();
@@ -229,7 +235,7 @@ impl FrameScene {
             shutter_s: weather.drop_exposure_s(time_s),
             ..self.clone()
         };
-        set_time(&mut frame_scene.data, weather, loaded, (self.origin, &viewpoint), time_s)?;
+        set_time(&mut frame_scene.data, weather, loaded, (self.origin, &viewpoint), time_s, &self.fall)?;
         Ok(frame_scene)
     }
 

@@ -19,7 +19,7 @@
 //! What lets light through stays as it is; drops on it are of [`glazing`](crate::glazing). Light that has been thrown back twice finds dry
 //! surfaces.
 
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 use downpour_drop::fall_speed::terminal_speed;
 use downpour_math::ops;
@@ -68,12 +68,37 @@ impl SceneWetness {
     /// The wetness of a weather at a time in s, for buffers relative to `origin`. `None`: all is dry.
     #[must_use]
     pub fn of(weather: &Weather, time_s: f64, origin: DVec3) -> Option<Self> {
+        Self::of_falling(weather, time_s, origin, &KnownFall::default())
+    }
+
+    /// The same where the fall speed of the rain may be known.
+    pub(crate) fn of_falling(
+        weather: &Weather,
+        time_s: f64,
+        origin: DVec3,
+        known: &KnownFall,
+    ) -> Option<Self> {
         let at = weather.wetness_at(time_s)?;
         // The wind that the rain has come with: that of time 0, without gusts.
-        let velocity = weather.wind.air().mean(0.0) - DVec3::Y * fall_speed(&weather.heaviest_rain());
+        let velocity = weather.wind.air().mean(0.0) - DVec3::Y * known.speed(&weather.heaviest_rain());
         let towards = (-velocity).normalize_or(DVec3::Y).as_vec3();
         let shift = origin.map(|x| x.rem_euclid(SHIFT_M)).as_vec3();
         Some(Self { at, towards, shift })
+    }
+}
+
+/// Fall speed, m/s, of the rain that was asked for last: it is an integral over all sizes.
+#[derive(Debug, Default)]
+pub(crate) struct KnownFall(Mutex<Option<(Rain, f64)>>);
+
+impl KnownFall {
+    /// That of a rain.
+    fn speed(&self, rain: &Rain) -> f64 {
+        let mut last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*last {
+            Some((known, speed)) if known == rain => *speed,
+            _ => last.insert((*rain, fall_speed(rain))).1,
+        }
     }
 }
 

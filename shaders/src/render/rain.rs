@@ -85,6 +85,12 @@ shared_constants! {
         TILES_SCAN: u32 = 256;
         /// Drops of a tile that are sorted in workgroup memory.
         TILES_SORTED: u32 = 1024;
+        /// Drops of a workgroup that lists drops.
+        TILES_GROUP: u32 = 64;
+        /// Columns and rows of tiles of a drop that the invocations of a workgroup deal with at once: their squares are a workgroup.
+        TILES_LANES: u32 = 8;
+        /// Tiles that one invocation deals with.
+        TILES_FEW: u32 = 64;
         /// Diameters of the masks.
         PROJECT_DIAMETERS: u32 = 18;
         /// Meters between them; the first is one step.

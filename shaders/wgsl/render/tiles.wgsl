@@ -2,7 +2,7 @@
 // up (drops_sum.wgsl).
 // Method: the drops of each tile are counted, a running sum of the counts gives each tile its part of the lists, the drops are put
 // there in any order, and each list is sorted by distance, then by id. So the lists do not depend on the order in which the device
-// works.
+// works. A drop that may touch many tiles is shared by the invocations of its workgroup: one alone would keep all others waiting.
 // Tiles are 8 pixels wide and high. Where the lists could be longer than there is room, the edge is doubled until they fit: one
 // tile for all has each drop once. No drop is left out.
 // Layout of the lists: the edge of a tile; the indices at which the tiles' lists begin (one more than there are tiles); the lists.
@@ -35,6 +35,9 @@ var<workgroup> tiles_totals: array<u32, TILES_SCAN>;
 var<workgroup> tiles_keys: array<vec2u, TILES_SORTED>;
 // First entry and length of a list.
 var<workgroup> tiles_list: vec2u;
+// Drops of the workgroup that may touch many tiles, and their number.
+var<workgroup> tiles_large: array<u32, TILES_GROUP>;
+var<workgroup> tiles_large_count: atomic<u32>;
 
 // First and last row of tiles that a drop may touch; (1, 0): there is none.
 fn tiles_rows(drop: ScreenDrop, edge: u32, size: vec2u) -> vec2u {
@@ -160,22 +163,36 @@ fn main_tiles_measure(
 fn main_tiles_count(
     @builtin(global_invocation_id) id: vec3u,
     @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_index) local: u32,
 ) {
     let index = invocation_index(id, groups);
-    if index >= tiles_frame.count {
-        return;
-    }
-    let drop = tiles_drops[index];
-    if !tiles_is_listed(drop) {
-        return;
-    }
+    let size = tiles_frame.size;
     let edge = tiles_edge();
-    let across = (tiles_frame.size.x + edge - 1u) / edge;
-    let rows = tiles_rows(drop, edge, tiles_frame.size);
-    for (var row = rows.x; row <= rows.y; row += 1u) {
-        let columns = tiles_columns(drop, row, edge, tiles_frame.size.x);
-        for (var column = columns.x; column <= columns.y; column += 1u) {
-            atomicAdd(&tiles_counts[TILES_HEAD + row * across + column], 1u);
+    let across = (size.x + edge - 1u) / edge;
+    let is_listed = index < tiles_frame.count && tiles_is_listed(tiles_drops[index]);
+    let is_large = is_listed && tiles_bound(tiles_drops[index], edge, size) > TILES_FEW;
+    if is_large {
+        tiles_large[atomicAdd(&tiles_large_count, 1u)] = index;
+    }
+    workgroupBarrier();
+    let large = atomicLoad(&tiles_large_count);
+    // Its own drop, then its part of those of the workgroup.
+    for (var turn = select(1u, 0u, is_listed && !is_large); turn <= large; turn += 1u) {
+        var at = index;
+        var first = vec2u(0u);
+        var each = 1u;
+        if turn > 0u {
+            at = tiles_large[turn - 1u];
+            first = vec2u(local % TILES_LANES, local / TILES_LANES);
+            each = TILES_LANES;
+        }
+        let drop = tiles_drops[at];
+        let rows = tiles_rows(drop, edge, size);
+        for (var row = rows.x + first.y; row <= rows.y; row += each) {
+            let columns = tiles_columns(drop, row, edge, size.x);
+            for (var column = columns.x + first.x; column <= columns.y; column += each) {
+                atomicAdd(&tiles_counts[TILES_HEAD + row * across + column], 1u);
+            }
         }
     }
 }
@@ -220,24 +237,38 @@ fn main_tiles_scan(@builtin(local_invocation_index) local: u32) {
 fn main_tiles_place(
     @builtin(global_invocation_id) id: vec3u,
     @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_index) local: u32,
 ) {
     let index = invocation_index(id, groups);
-    if index >= tiles_frame.count {
-        return;
-    }
-    let drop = tiles_drops[index];
-    if !tiles_is_listed(drop) {
-        return;
-    }
+    let size = tiles_frame.size;
     let edge = tiles_lists[0];
-    let across = (tiles_frame.size.x + edge - 1u) / edge;
-    let rows = tiles_rows(drop, edge, tiles_frame.size);
-    for (var row = rows.x; row <= rows.y; row += 1u) {
-        let columns = tiles_columns(drop, row, edge, tiles_frame.size.x);
-        for (var column = columns.x; column <= columns.y; column += 1u) {
-            let tile = row * across + column;
-            let left = atomicSub(&tiles_counts[TILES_HEAD + tile], 1u);
-            tiles_lists[tiles_lists[1u + tile] + left - 1u] = index;
+    let across = (size.x + edge - 1u) / edge;
+    let is_listed = index < tiles_frame.count && tiles_is_listed(tiles_drops[index]);
+    let is_large = is_listed && tiles_bound(tiles_drops[index], edge, size) > TILES_FEW;
+    if is_large {
+        tiles_large[atomicAdd(&tiles_large_count, 1u)] = index;
+    }
+    workgroupBarrier();
+    let large = atomicLoad(&tiles_large_count);
+    // Its own drop, then its part of those of the workgroup.
+    for (var turn = select(1u, 0u, is_listed && !is_large); turn <= large; turn += 1u) {
+        var at = index;
+        var first = vec2u(0u);
+        var each = 1u;
+        if turn > 0u {
+            at = tiles_large[turn - 1u];
+            first = vec2u(local % TILES_LANES, local / TILES_LANES);
+            each = TILES_LANES;
+        }
+        let drop = tiles_drops[at];
+        let rows = tiles_rows(drop, edge, size);
+        for (var row = rows.x + first.y; row <= rows.y; row += each) {
+            let columns = tiles_columns(drop, row, edge, size.x);
+            for (var column = columns.x + first.x; column <= columns.y; column += each) {
+                let tile = row * across + column;
+                let left = atomicSub(&tiles_counts[TILES_HEAD + tile], 1u);
+                tiles_lists[tiles_lists[1u + tile] + left - 1u] = at;
+            }
         }
     }
 }

@@ -20,8 +20,9 @@ struct ShelterFrame {
     // Places of the list that are asked for, and the first of them.
     room: u32,
     first: u32,
-    unused_1: u32,
-    unused_2: u32,
+    // 1: only drops that are stopped while the shutter is open are asked for; others stay as they are, whatever is above them.
+    stopped: u32,
+    unused: u32,
 }
 
 @group(0) @binding(6) var<uniform> shelter_frame: ShelterFrame;
@@ -92,18 +93,23 @@ fn main_shelter(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
     // As it is drawn, and as it has moved.
     let start = here - drop.velocity * half_time;
     let at = here + shelter_carried(0u, drop.speed) + vec3f(0.0, drop.speed * half_time, 0.0);
+    // The path during the exposure is the shorter one.
+    var met = -1.0;
+    if half_time > 0.0 {
+        met = shelter_hit(start, drop.velocity, 0.0, 2.0 * half_time).distance;
+    }
+    if shelter_frame.stopped > 0u && met < 0.0 {
+        return;
+    }
     if !shelter_is_open(start, at, 0u, drop.speed, drop.velocity) {
         shelter_drops[index].diameter = 0.0;
         return;
     }
-    if half_time > 0.0 {
-        let met = shelter_hit(start, drop.velocity, 0.0, 2.0 * half_time).distance;
-        if met >= 0.0 {
-            let until = min(drop.present.y, met - half_time);
-            shelter_drops[index].present.y = until;
-            if drop.present.x > until {
-                shelter_drops[index].diameter = 0.0;
-            }
+    if met >= 0.0 {
+        let until = min(drop.present.y, met - half_time);
+        shelter_drops[index].present.y = until;
+        if drop.present.x > until {
+            shelter_drops[index].diameter = 0.0;
         }
     }
 }

@@ -16,6 +16,9 @@ use crate::error::LatticeError;
 /// Maximum mean of a single Poisson draw, whose probability of 0 is far above the smallest number.
 const MAX_MEAN: f64 = 8.0;
 
+/// Classes of diameters in a factor of two, for the energy of the smallest drops.
+const CLASSES_PER_OCTAVE: f64 = 32.0;
+
 /// Maximum number of impacts of one call.
 const MAX_IMPACTS: f64 = 1.0e6;
 
@@ -27,6 +30,8 @@ pub struct PuddleRain {
     speed: TerminalSpeed,
     /// Impacts per m^2 and s.
     rate: f64,
+    /// Smallest drop whose impact is told, m.
+    smallest_m: f32,
 }
 
 impl PuddleRain {
@@ -48,10 +53,31 @@ impl PuddleRain {
             sizes: rain.sample_table(SampledBy::Flux),
             speed: TerminalSpeed::new(rain.options().fall_speed, &rain.options().air),
             rate: rain.impact_rate(),
+            smallest_m: 0.0,
         }
     }
 
-    /// Impacts per m^2 and s.
+    /// The same impacts of a rain without those of its smallest drops, which together bring no more than a part of the kinetic energy, 0
+    /// to 1: they are most of all drops.
+    #[must_use]
+    pub fn without_weakest(self, rain: &DropSizeDistribution, part: f64) -> Self {
+        let energy = |[low, high]: [f64; 2]| {
+            let diameter = 0.5 * (low + high);
+            let speed = self.speed.at(diameter).unwrap_or(0.0);
+            let [cubed, speed_cubed] = [diameter, speed].map(|x| x * x * x);
+            rain.concentration(diameter) * cubed * speed_cubed * (high - low)
+        };
+        let classes = rain.diameter_classes(CLASSES_PER_OCTAVE);
+        let whole: f64 = classes.iter().copied().map(energy).sum();
+        let mut sum = 0.0;
+        let first_told = classes.iter().find(|class| {
+            sum += energy(**class);
+            sum > part * whole
+        });
+        Self { smallest_m: first_told.map_or(0.0, |class| class[0] as f32), ..self }
+    }
+
+    /// Impacts per m^2 and s, those that are left out among them.
     #[must_use]
     pub fn rate(&self) -> f64 {
         self.rate
@@ -82,6 +108,9 @@ impl PuddleRain {
 
     fn impact(&self, extent_m: [f32; 2], words: [u32; 4]) -> Option<Impact> {
         let diameter_m = self.sizes.sample(words[2]);
+        if diameter_m < self.smallest_m {
+            return None;
+        }
         let speed = self.speed.at(f64::from(diameter_m)).ok()?;
         let position_m = [rng_unit(words[0]) * extent_m[0], rng_unit(words[1]) * extent_m[1]];
         Some(Impact { position_m, speed_m_s: speed as f32, diameter_m })

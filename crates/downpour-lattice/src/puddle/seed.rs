@@ -14,8 +14,11 @@
 //! of the drop's. The two fractions are chosen, not measured. Slopes and depths stay within the linear law: a is at
 //! most half a length and half the depth, and a length is at least 1.25 cells.
 
+#[cfg(feature = "wgpu")]
+use downpour_math::bins::Bins;
 use downpour_math::in_range;
 use std::f64::consts::PI;
+use std::sync::LazyLock;
 
 use downpour_math::ops;
 use downpour_shaders::lattice::puddle::{
@@ -34,6 +37,8 @@ const CRATER_FRACTION: f64 = 0.25;
 const HOLLOW: f64 = 1.209_2;
 /// Radius beyond which a damped sine is cut, in lengths.
 const REACH: f64 = 6.0;
+/// Craters that are worth a thread of their own.
+const MIN_TOGETHER: usize = 32;
 /// Minimum length, in cells.
 const MIN_LENGTH_CELLS: f64 = 1.25;
 
@@ -144,18 +149,53 @@ impl PuddleSeed {
     /// Sums of the shape and of exp(-q) over the cells of water.
     fn sums(&self, links: &Links) -> [f64; 2] {
         let mut sums = [0.0; 2];
+        let profile = match self.shape() {
+            PUDDLE_SEED_BUMP => None,
+            _ => Some(&*CRATER_PROFILE),
+        };
         self.visit(links, |x, y| {
             let distance = distance(self, [x as f32, y as f32]);
             if distance < self.reach.abs() {
                 let q = distance * self.per_length;
-                let fall = ops::exp(-q);
-                let height = shape_of(self.shape(), q, fall);
+                let [height, fall] = match profile {
+                    Some(profile) => profile.at(q),
+                    None => {
+                        let fall = ops::exp(-q);
+                        [shape_of(self.shape(), q, fall), fall]
+                    }
+                };
                 sums[0] += f64::from(height);
-                // As much as a lift of 1 adds to the height.
-                sums[1] += f64::from(height + fall) - f64::from(height);
+                sums[1] += f64::from(fall);
             }
         });
         sums
+    }
+}
+
+/// The shape of a crater and exp(-q), linear between distances: within 1e-6 of them.
+struct CraterProfile(Vec<[f32; 2]>);
+
+/// Nodes of it in a length.
+const NODES_PER_LENGTH: f32 = 512.0;
+
+static CRATER_PROFILE: LazyLock<CraterProfile> = LazyLock::new(|| {
+    let node = |k: u16| {
+        let q = f32::from(k) / NODES_PER_LENGTH;
+        let fall = ops::exp(-q);
+        [shape_of(PUDDLE_SEED_CRATER, q, fall), fall]
+    };
+    // One more than within reach.
+    CraterProfile((0..=(REACH as f32 * NODES_PER_LENGTH) as u16 + 1).map(node).collect())
+});
+
+impl CraterProfile {
+    /// Both at a distance in lengths, up to the reach of a crater.
+    fn at(&self, q: f32) -> [f32; 2] {
+        let at = q * NODES_PER_LENGTH;
+        let node = (at as usize).min(self.0.len() - 2);
+        let part = at - node as f32;
+        let [near, far] = [self.0[node], self.0[node + 1]];
+        [0, 1].map(|k| near[k] + (far[k] - near[k]) * part)
     }
 }
 
@@ -165,7 +205,7 @@ pub(crate) fn craters<'a>(
     impacts: impl IntoIterator<Item = &'a Impact>,
 ) -> Result<Vec<PuddleSeed>, LatticeError> {
     let impacts: Vec<&Impact> = impacts.into_iter().collect();
-    impacts.par_iter().map(|impact| crater(model, impact)).collect()
+    impacts.par_iter().with_min_len(MIN_TOGETHER).map(|impact| crater(model, impact)).collect()
 }
 
 fn to_cells(model: &Model, position_m: [f32; 2]) -> Result<[f32; 2], LatticeError> {
@@ -259,24 +299,34 @@ impl SeedSquares {
     pub(crate) fn new(links: &Links, seeds: &[PuddleSeed]) -> Self {
         let edge = downpour_shaders::lattice::puddle::PUDDLE_SEED_SQUARE as usize;
         let across = links.stride().div_ceil(edge);
-        let mut squares = vec![Vec::new(); across * links.size[1].div_ceil(edge)];
-        for (number, seed) in (0..).zip(seeds) {
-            let [columns, rows] = seed.cells(links.size);
+        let squares = across * links.size[1].div_ceil(edge);
+        let Bins { starts, items } = Bins::new(squares, seeds.len() as u32, |number, touches| {
+            let [columns, rows] = seeds[number as usize].cells(links.size);
             if columns.is_empty() || rows.is_empty() {
-                continue;
+                return;
             }
             for y in rows.start / edge..=(rows.end - 1) / edge {
                 for x in columns.start / edge..=(columns.end - 1) / edge {
-                    squares[y * across + x].push(number);
+                    touches(y * across + x);
                 }
             }
+        });
+        Self { first: starts, entries: items }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_profile_of_a_crater_is_its_shape() {
+        for k in 0..6000u16 {
+            let q = f32::from(k) * 1.0e-3;
+            let [height, fall] = CRATER_PROFILE.at(q);
+            let exact = [puddle_seed_shape(PUDDLE_SEED_CRATER, q), ops::exp(-q)];
+            let off = (height - exact[0]).abs().max((fall - exact[1]).abs());
+            assert!(off < 1.0e-6, "{q}: {height} and {fall} in place of {exact:?}");
         }
-        let mut first = vec![0];
-        let mut entries = Vec::new();
-        for square in squares {
-            entries.extend(square);
-            first.push(entries.len() as u32);
-        }
-        Self { first, entries }
     }
 }

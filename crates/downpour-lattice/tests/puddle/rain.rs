@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
-use downpour_lattice::puddle::PuddleRain;
+use downpour_lattice::puddle::{Impact, PuddleRain};
 
 fn rain(rate_mm_h: f64) -> DropSizeDistribution {
     DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, rate_mm_h).expect("a rain")
@@ -50,6 +50,31 @@ fn number_and_water_are_those_of_the_rate() {
         );
         assert!(water_square.sqrt() < 0.05 * expected, "too few drops to tell");
     }
+}
+
+/// Without drops that bring a hundredth of the energy, the others are those that they were, and few.
+#[test]
+fn most_drops_bring_next_to_no_energy() {
+    let law = rain(100.0);
+    let all = PuddleRain::new(&law, 3);
+    let told = all.clone().without_weakest(&law, 0.01);
+    let energy = |impacts: &[Impact]| -> f64 {
+        impacts.iter().map(|i| f64::from(i.diameter_m).powi(3) * f64::from(i.speed_m_s).powi(2)).sum()
+    };
+    let (mut count, mut sum) = ([0; 2], [0.0; 2]);
+    for step in 0..4 {
+        let [before, after] = [&all, &told].map(|rain| rain.impacts([4.0, 4.0], step, 0.1).expect("impacts"));
+        let mut rest = before.iter();
+        assert!(after.iter().all(|impact| rest.any(|other| other == impact)), "the same drops");
+        for (k, impacts) in [&before, &after].into_iter().enumerate() {
+            count[k] += impacts.len();
+            sum[k] += energy(impacts);
+        }
+    }
+    let left_out = 1.0 - sum[1] / sum[0];
+    assert!((0.005..0.015).contains(&left_out), "{left_out} of the energy");
+    assert!(count[1] * 5 < count[0] * 2, "{count:?} drops");
+    assert_eq!(told.rate(), all.rate());
 }
 
 #[test]

@@ -129,10 +129,10 @@ pub struct ShelterFrame {
     pub room: u32,
     /// First of them.
     pub first: u32,
+    /// 1: only drops that are stopped while the shutter is open are asked for.
+    pub stopped: u32,
     /// 0.
-    pub unused_1: u32,
-    /// 0.
-    pub unused_2: u32,
+    pub unused: u32,
 }
 
 /// Drops of a picture, as a GPU is asked for them.

@@ -231,8 +231,14 @@ impl FieldPipeline {
         let (drops, found) = (list.drops(), list.counts());
         let to = ListOnGpu { drops, found };
         let (resolved, columns) = (query.resolved, query.frame.columns);
-        let of_picture =
-            self.search(buffers, (field, on), obstacles, (search.view, search.time_s), &query, to)?;
+        let of_picture = self.search(
+            buffers,
+            (field, on),
+            obstacles,
+            (search.view, search.time_s),
+            (&query, Wants::All),
+            to,
+        )?;
         let mut splashes = Vec::new();
         for slice in slices {
             let SplashSearch { slice, view, query, mut frame } = slice;
@@ -240,7 +246,14 @@ impl FieldPipeline {
             let counts = buffers.buffer("number of drops of a slice", COUNTS, wgpu::BufferUsages::STORAGE)?;
             let from = ListOnGpu { drops: &of_slice, found: &counts };
             let time_s = slice.middle_s();
-            let searched = self.search(buffers, (field, on), obstacles, (&view, time_s), &query, from)?;
+            let searched = self.search(
+                buffers,
+                (field, on),
+                obstacles,
+                (&view, time_s),
+                (&query, Wants::Stopped),
+                from,
+            )?;
             (frame.first, frame.room) = (known, room);
             frame.pane = search.pane.unwrap_or_default();
             let uniform = buffers.uniform("splash frame", &frame)?;
@@ -267,7 +280,7 @@ impl FieldPipeline {
         (field, on): (&RainField, &mut FieldOnGpu),
         obstacles: &ObstaclesOnGpu<'_>,
         (view, time_s): (&View, f64),
-        query: &FieldQuery,
+        (query, wants): (&FieldQuery, Wants),
         to: ListOnGpu<'_>,
     ) -> Result<Search<'_>, GpuSimError> {
         let ListOnGpu { drops, found } = to;
@@ -287,7 +300,8 @@ impl FieldPipeline {
         }
         let mut shelter = None;
         if let Some(bounds) = obstacles.bounds {
-            let (frame, drift) = shelter_frame(field, on, query, (obstacles, bounds), (view, time_s));
+            let (mut frame, drift) = shelter_frame(field, on, query, (obstacles, bounds), (view, time_s));
+            frame.stopped = wants.into();
             let uniform = buffers.uniform("shelter frame", &frame)?;
             let drift = buffers.constants("drift of paths", &drift)?;
             let mut bound = obstacles.bindings();
@@ -406,10 +420,28 @@ fn shelter_frame(
         cuts: cuts as u32,
         room: query.frame.room,
         first: query.frame.first,
-        unused_1: 0,
-        unused_2: 0,
+        stopped: 0,
+        unused: 0,
     };
     (frame, drift)
+}
+
+/// Drops that a search is for.
+#[derive(Clone, Copy, Debug)]
+enum Wants {
+    /// All that obstacles have not stopped when the shutter opens.
+    All,
+    /// Those of them that are stopped while it is open.
+    Stopped,
+}
+
+impl From<Wants> for u32 {
+    fn from(wants: Wants) -> Self {
+        match wants {
+            Wants::All => 0,
+            Wants::Stopped => 1,
+        }
+    }
 }
 
 impl FieldOnGpu {

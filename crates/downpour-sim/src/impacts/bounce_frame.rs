@@ -219,11 +219,13 @@ impl Bounce {
             Bounds { low: origin + low.as_dvec3() - 1.0e-3, high: origin + high.as_dvec3() + 1.0e-3 };
         // Where the drops of a class are at the end.
         let mut boxes: Vec<Option<Bounds>> = vec![None; field.classes.len()];
+        let fastest: Vec<f64> =
+            field.classes.iter().map(|class| field.fastest_droplet(class, self)).collect();
         for (pair, ends) in drifts.windows(2).zip(times.windows(2)) {
             let ages = [ends[1], ends[0]].map(|time| (time_s - time).max(0.0));
             let travels = Travels { ages, drifts: [now.clone(), pair[0].clone(), pair[1].clone()] };
-            for (class, found) in field.classes.iter().zip(&mut boxes) {
-                let origins = travels.origins(field, class, view, least_pixels, self);
+            for ((class, &fastest), found) in field.classes.iter().zip(&fastest).zip(&mut boxes) {
+                let origins = travels.origins((class, fastest), view, least_pixels, self);
                 let Some(starts) = origins.and_then(|origins| origins.bounds.common(&around)) else {
                     continue;
                 };

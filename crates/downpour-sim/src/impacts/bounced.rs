@@ -75,7 +75,8 @@ impl RainField {
             let ages = [slice, slice + 1].map(|k| f64::from(k) * span / slices - half);
             let travels = Travels::new(self, time_s, ages);
             let of_class = |class: &Class| {
-                let origins = travels.origins(self, class, view, least_pixels, bounce)?;
+                let fastest = self.fastest_droplet(class, bounce);
+                let origins = travels.origins((class, fastest), view, least_pixels, bounce)?;
                 let (bounds, swept_sides) = (origins.bounds, &swept_sides);
                 let in_part = move |place: &Bounds| origins.may_be_in(place, view, swept_sides);
                 let travels = &travels;
@@ -126,6 +127,11 @@ impl RainField {
         Ok(listed.collect())
     }
 
+    /// Terminal speed of the largest droplet of a class, m/s.
+    pub(super) fn fastest_droplet(&self, class: &Class, bounce: &Bounce) -> f64 {
+        self.speed.at(class.largest * f64::from(bounce.size)).unwrap_or(0.0)
+    }
+
     /// Distance that the wind carries the drops that follow it best, from a time to another, m.
     fn carried(&self, begin_s: f64, end_s: f64) -> f64 {
         let slowest = self.classes.iter().map(|class| class.speeds[0]).fold(f64::INFINITY, f64::min);
@@ -174,11 +180,10 @@ impl Travels {
         (from[0].0.midpoint(from[1].0), radius)
     }
 
-    /// Origins of droplets that a picture shows, of the drops of a class.
+    /// Origins of droplets that a picture shows, of the drops of a class, of which the fastest droplet falls with a speed, m/s.
     pub(super) fn origins(
         &self,
-        field: &RainField,
-        class: &Class,
+        (class, fastest): (&Class, f64),
         view: &View,
         least_pixels: f64,
         bounce: &Bounce,
@@ -188,7 +193,7 @@ impl Travels {
         if range < view.near {
             return None;
         }
-        let speeds = [class.speeds[0] * 0.2 * size, field.speed.at(class.largest * size).unwrap_or(0.0)];
+        let speeds = [class.speeds[0] * 0.2 * size, fastest];
         let [now, oldest, youngest] = &self.drifts;
         let wind = oldest.of(class.speeds[1])[1].length().max(now.of(class.speeds[1])[1].length());
         let leaves = leaving_speed(bounce, class.speeds[1], wind);

@@ -54,7 +54,7 @@ impl FrameScene {
         data.remove_emission();
         let panes = data.glazing_rows().to_vec();
         data.set_lights(&lights);
-        data.set_wetness(SceneWetness::of(weather, time_s, self.origin).as_ref());
+        data.set_wetness(SceneWetness::of_falling(weather, time_s, self.origin, &self.fall).as_ref());
         data.set_glazing(&panes);
         data.sky = Arc::new(sky.texels);
         data.sky_levels = sky.levels;

@@ -79,6 +79,9 @@ const DISTANCES: &str = "distances of drops";
 /// Labels of the buffers with the light of a frame of a clip.
 const FRAME_LIGHT: [&str; 2] = ["light of a frame", "means of light of a frame"];
 
+/// Time of the rays of a scene, ms, up to which a frame is submitted as a whole.
+const SHORT_MS: f64 = 100.0;
+
 /// Room for passes that are timed by the device.
 const MAX_PASSES: u32 = 32;
 
@@ -241,14 +244,16 @@ impl PictureRenderer {
         let _drawing = self.drawing.lock().unwrap_or_else(PoisonError::into_inner);
         let pool = &*self.pool;
         pool.begin_frame();
-        let mut passes = FramePasses::after(&self.queries, pool, MAX_PASSES)?;
+        let pace = *self.pace.lock().unwrap_or_else(PoisonError::into_inner);
+        let samples = samples_of(&frame);
+        let is_short = pace.is_some_and(|ms_per_sample| ms_per_sample * samples < SHORT_MS);
+        let mut passes = FramePasses::after(&self.queries, pool, MAX_PASSES)?.with_short(is_short);
         let made_before = self.gpu.buffers_made();
         let uploaded =
             passes.host("upload", || Ok::<_, GpuError>((self.upload(scene)?, self.upload_masks(masks)?)))?;
         if let Some(ripples) = uploaded.0.ripples(pool)? {
             passes.run("ripples", &ripples.dispatches())?;
         }
-        let pace = *self.pace.lock().unwrap_or_else(PoisonError::into_inner);
         let eye = viewpoint.eye.as_dvec3();
         let camera = frame.camera;
         // The drops are put on the picture by the device.
@@ -307,6 +312,7 @@ impl PictureRenderer {
             }
             layers.push(("picture", traced.picture().clone()));
             clean.get_or_insert(traced.picture().clone());
+            passes.flush()?;
         }
         let clean = clean.expect("a plate that is not kept is traced");
         let (falling, count, search) = passes.host("drops to the device", || match drops {
@@ -400,7 +406,7 @@ impl PictureRenderer {
             readbacks: self.readbacks.clone(),
             pool: Arc::clone(&self.pool),
             pace: Arc::clone(&self.pace),
-            samples: f64::from(frame.grid * frame.grid) * f64::from(camera.width) * f64::from(camera.height),
+            samples,
             rain,
             count: count as usize,
             found,
@@ -798,6 +804,11 @@ impl DisplayReadback {
             device: Some(device),
         })
     }
+}
+
+/// Samples of the pixels of a frame.
+fn samples_of(frame: &RenderFrame) -> f64 {
+    f64::from(frame.grid * frame.grid) * f64::from(frame.camera.width) * f64::from(frame.camera.height)
 }
 
 /// Notes how long a sample of the scene takes, ms.

@@ -25,6 +25,9 @@ const BLOCK_M: f64 = 4.0;
 /// The wind carries drops aside by less than this between the height of a map's middle and the surface, m.
 const ASIDE_M: f64 = 0.25;
 
+/// Drops that are worth a thread of their own.
+const DROPS_TOGETHER: usize = 256;
+
 /// Cells of a row of a map that are bounded together.
 const CELLS_BOUNDED: usize = 16;
 
@@ -246,7 +249,7 @@ fn impacts(map: &PuddleMap, origin: DVec3, crossings: &[Crossing], [low, high]: 
         let (at, drift) = (Vec2::new(at.x, at.z), water.velocity);
         (chance < water.open).then_some(Impact { at, drift, time_s, ago_s, diameter, size, id })
     };
-    crossings.iter().filter_map(impact).collect()
+    crossings.par_iter().with_min_len(DROPS_TOGETHER).filter_map(impact).collect()
 }
 
 impl Shores {

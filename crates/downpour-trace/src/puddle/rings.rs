@@ -5,6 +5,7 @@
 //! ripples, from which the part of the larger ones is taken off. Rings are a function of time and eye alone.
 
 use std::collections::HashSet;
+use std::hash::{BuildHasherDefault, Hasher};
 use std::sync::Arc;
 
 use downpour_drop::distribution::DropSizeDistribution;
@@ -116,6 +117,32 @@ struct Placing {
 /// A ring in a picture: its cell, and its words.
 type Placed = (usize, [u32; 2]);
 
+/// Drops, by their ids.
+type IdSet = HashSet<u64, IdHash>;
+
+/// Hashes ids of drops, which nobody chooses.
+type IdHash = BuildHasherDefault<IdHasher>;
+
+/// Hash of a number: its product with an odd one, whose upper bits depend on all of it.
+#[derive(Default)]
+struct IdHasher(u64);
+
+impl Hasher for IdHasher {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|&byte| self.write_u64(byte.into()));
+    }
+
+    fn write_u64(&mut self, number: u64) {
+        // The golden ratio, in 64 bits.
+        let mixed = (self.0 ^ number).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        self.0 = mixed ^ (mixed >> 32);
+    }
+}
+
 impl Rings {
     /// Makes the slopes of the rings of a rain, whose rate is never larger.
     ///
@@ -170,23 +197,17 @@ impl Rings {
         // Where puddles overlap, the ring is the first one's.
         let grounds: Vec<&Ground> = with_rings().map(|(map, _)| &map.ground).collect();
         let overlap = grounds.iter().enumerate().any(|(k, a)| grounds[..k].iter().any(|b| a.may_overlap(b)));
-        let mut known = HashSet::new();
-        let mut placed: Vec<Placed> = Vec::new();
+        let mut known =
+            IdSet::with_capacity_and_hasher(if overlap { MAX_RINGS } else { 0 }, IdHash::default());
+        let mut placed: Vec<Placed> = Vec::with_capacity(MAX_RINGS);
         for impact in self.drops.impacts().filter(|impact| f64::from(impact.diameter) >= smallest) {
             let ring = placed_ring(impact, &placing);
             placed.extend(ring.filter(|_| !overlap || known.insert(impact.id)));
         }
-        placed.sort_unstable();
-        placed.truncate(MAX_RINGS);
-        let mut cells = vec![0; CELLS * CELLS + 1];
-        for (cell, _) in &placed {
-            cells[cell + 1] += 1;
-        }
-        for k in 1..cells.len() {
-            cells[k] += cells[k - 1];
-        }
+
+        let (cells, rings) = binned(&placed);
+
         let part = self.part(rain.sizes.unwrap_or(&self.heaviest), smallest);
-        let rings = placed.into_iter().map(|(_, words)| words).collect();
         Ok(RingRows { slopes: Arc::clone(&self.slopes), cells, rings, part, corner, middle })
     }
 
@@ -218,6 +239,30 @@ fn placed_ring(impact: &Impact, placing: &Placing) -> Option<Placed> {
     let within = place - cell;
     let words = [units(within.x) | units(within.y) << 16, units(age) | units(impact.size) << 16];
     Some((z? * CELLS + x?, words))
+}
+
+/// Number of the first ring of each cell, and of one more, and the rings, cell by cell, in an order that does not depend on theirs.
+/// Those for which there is no room are in the last cells.
+fn binned(placed: &[Placed]) -> (Vec<u32>, Vec<[u32; 2]>) {
+    let mut starts = vec![0u32; CELLS * CELLS + 1];
+    for (cell, _) in placed {
+        starts[cell + 1] += 1;
+    }
+    for k in 1..starts.len() {
+        starts[k] += starts[k - 1];
+    }
+    let mut next = starts.clone();
+    let mut rings = vec![[0; 2]; placed.len()];
+    for (cell, words) in placed {
+        rings[next[*cell] as usize] = *words;
+        next[*cell] += 1;
+    }
+    for cell in starts.windows(2).filter(|cell| cell[1] - cell[0] > 1) {
+        rings[cell[0] as usize..cell[1] as usize].sort_unstable();
+    }
+    rings.truncate(MAX_RINGS);
+    starts.iter_mut().for_each(|start| *start = (*start).min(MAX_RINGS as u32));
+    (starts, rings)
 }
 
 /// Smallest diameter, m, from which on no more than `most` drops come through a square meter in a second.
@@ -295,6 +340,7 @@ impl RingRows {
         // Two cells in a word: there are not as many rings as would not fit.
         let pair = |k: usize| self.cells[k] | self.cells.get(k + 1).map_or(0, |next| next << 16);
         let cells: Vec<u32> = (0..self.cells.len()).step_by(2).map(pair).collect();
+        table.reserve(cells.len() / 4 + 1 + MAX_RINGS / 2);
         table.extend(cells.chunks(4).map(row));
         let end = table.len() + MAX_RINGS / 2;
         table.extend(self.rings.as_flattened().chunks(4).map(row));

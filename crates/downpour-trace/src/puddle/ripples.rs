@@ -30,6 +30,9 @@ pub(super) const MEMORY_S: f64 = 2.5;
 #[cfg(feature = "wgpu")]
 const STEPS_TOGETHER: usize = 50;
 
+/// Part of the kinetic energy of a rain that its smallest drops bring, which make no waves.
+const WEAKEST_PART: f64 = 0.01;
+
 /// Steps with rain of one rate, where the rate changes: a quarter of a second.
 const STEPS_OF_RATE: i64 = 50;
 
@@ -111,7 +114,7 @@ impl Changes {
         if rate > 0.0 {
             let heaviest = &self.heaviest;
             let sizes = DropSizeDistribution::with_options(heaviest.law(), rate, heaviest.options())?;
-            *rain = Some(PuddleRain::new(&sizes, self.seed));
+            *rain = Some(rain_on_water(&sizes, self.seed));
         }
         Ok(())
     }
@@ -125,7 +128,7 @@ impl Ripples {
     pub fn new(rain: Option<&DropSizeDistribution>, seed: u64, time_s: f64) -> Result<Self, PuddleError> {
         let form = PuddleForm::GravityCapillary;
         let lattice = Lattice::Cpu(Box::new(Puddle::new(&options(form))?));
-        let rain = rain.map(|rain| PuddleRain::new(rain, seed));
+        let rain = rain.map(|rain| rain_on_water(rain, seed));
         Ok(Self { lattice, form, is_level: true, rain, changes: None, step: step_of(time_s - MEMORY_S) })
     }
 
@@ -239,6 +242,11 @@ impl Ripples {
             bytes_uploaded,
         })
     }
+}
+
+/// Impacts of a rain that make waves.
+fn rain_on_water(rain: &DropSizeDistribution, seed: u64) -> PuddleRain {
+    PuddleRain::new(rain, seed).without_weakest(rain, WEAKEST_PART)
 }
 
 /// Options of the lattice.
