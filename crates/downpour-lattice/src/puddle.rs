@@ -18,6 +18,8 @@
 //! cells. Waves below 4 cells are too slow as well, and no lattice resolves their directions. The model is linear:
 //! breaking, jets and splashes are not included.
 
+#[cfg(feature = "wgpu")]
+mod craters;
 mod dispersion;
 pub mod lattice;
 mod model;
@@ -30,6 +32,8 @@ mod storage;
 mod sweep;
 mod symbol;
 
+#[cfg(feature = "wgpu")]
+pub use craters::{CraterMaker, Craters};
 pub use dispersion::{PuddleForm, PuddleWater, phase_speed};
 pub use model::{MAX_SUBSTEPS, PuddleBorder, PuddleDamping, PuddleOptions, SIZE_RANGE};
 pub use normal::{puddle_normal_lean, puddle_normal_slopes, puddle_normal_texel, slope_levels};

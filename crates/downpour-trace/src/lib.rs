@@ -17,6 +17,7 @@
 )]
 
 mod assemble;
+mod background;
 pub mod billboards;
 #[cfg(not(feature = "parity"))]
 mod brdf;

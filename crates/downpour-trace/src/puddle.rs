@@ -9,6 +9,8 @@
 //! 4. [`water`](crate::scene::water): what a ray finds of them, on CPU and GPU.
 
 mod bodies;
+#[cfg(feature = "wgpu")]
+mod craters_ahead;
 mod drainage;
 mod error;
 pub mod fill;

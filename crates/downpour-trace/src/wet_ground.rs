@@ -1,5 +1,7 @@
 //! The puddles of a weather, from picture to picture.
 
+use std::sync::Arc;
+
 use downpour_drop::distribution::DropSizeDistribution;
 use downpour_lattice::puddle::PuddleForm;
 use downpour_scene::picture::{Picture, Pixels};
@@ -188,7 +190,7 @@ impl WetGround {
     /// As [`WetGround::new`]; [`PuddleError::Sim`] for an eye or a time out of range.
     pub fn find_rings(
         &mut self,
-        field: &RainField,
+        field: &Arc<RainField>,
         frame_scene: &FrameScene,
         time_s: f64,
     ) -> Result<(), PuddleError> {

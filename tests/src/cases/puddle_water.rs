@@ -1,5 +1,7 @@
 //! `shaders/wgsl/render/puddle_water.wgsl` against `downpour_trace::scene::water`.
 
+use std::sync::Arc;
+
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_gpu::{Gpu, GpuError};
 use downpour_math::ops;
@@ -183,7 +185,7 @@ fn case_rings(gpu: &Gpu) -> Result<Run, GpuError> {
     let cells = (0..16).map(|i| [0.0, 0.01, 0.01, if i == 5 { 0.4 } else { 1.0 }]).collect();
     let puddles = [(PuddleMap { ground, size: [4, 4], cells, flow: None }, PuddleLook::default())];
     let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 60.0).expect("a rain");
-    let field = RainField::new(&rain, 3).expect("a rain");
+    let field = Arc::new(RainField::new(&rain, 3).expect("a rain"));
     let eye = Vec3::new(0.05, 0.19, 0.14);
     let on_water = RainOnWater { field: &field, sizes: None, time_s: 2.3, eye: eye.as_dvec3() };
     let rings = Rings::new(&rain).and_then(|mut rings| rings.find(&on_water, &puddles, DVec3::ZERO));

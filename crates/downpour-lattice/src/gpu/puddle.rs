@@ -15,8 +15,8 @@ use downpour_shaders::lattice::puddle::{
 use crate::error::LatticeError;
 use crate::puddle::lattice::{PuddleGrid, puddle_state_pack, puddle_state_unpack};
 use crate::puddle::{
-    Impact, Model, PuddleOptions, PuddleSeed, PuddleStorage, SeedSquares, Wake, craters, footprints,
-    slope_levels, whole_normal,
+    CraterMaker, Craters, Impact, Model, PuddleOptions, PuddleSeed, PuddleStorage, SeedSquares, Wake,
+    craters, footprints, slope_levels, whole_normal,
 };
 
 /// Maximum number of seeds per dispatch: a driver may end an invocation that loops too long.
@@ -169,20 +169,22 @@ impl GpuPuddle {
         Ok(substeps)
     }
 
-    /// Adds the craters of impacts and then advances the puddle by `dt_s` seconds, once for each of `impacts`: in one submission. Does not
-    /// wait.
+    /// Maker of craters for this puddle.
+    #[must_use]
+    pub fn crater_maker(&self) -> CraterMaker {
+        CraterMaker::new(&self.model)
+    }
+
+    /// Adds craters, which are of this puddle's [`crater_maker`](Self::crater_maker), and then advances the puddle by `dt_s` seconds,
+    /// once for each of `steps`: in one submission. Does not wait.
     ///
     /// # Errors
-    /// As [`step`](Self::step) and [`seed`](Self::seed); the puddle is then unchanged.
-    pub fn rain(&mut self, impacts: &[Vec<Impact>], dt_s: f32) -> Result<(), GpuPuddleError> {
+    /// As [`step`](Self::step); the puddle is then unchanged.
+    pub fn rain(&mut self, steps: &[Craters], dt_s: f32) -> Result<(), GpuPuddleError> {
         let substeps = self.model.substeps(f64::from(dt_s))?;
-        // Those of all steps together are worth many threads.
-        let seeds = craters(&self.model, impacts.iter().flatten())?;
-        let mut rest = &seeds[..];
         self.pool.begin_frame();
         let mut work = Work { newer: self.newer, ..Work::default() };
-        for impacts in impacts {
-            let seeds = rest.split_off(..impacts.len()).unwrap_or_default();
+        for Craters(seeds) in steps {
             self.add_seeds(&mut work, seeds)?;
             self.add_steps(&mut work, f64::from(dt_s), substeps)?;
         }

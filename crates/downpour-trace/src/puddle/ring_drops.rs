@@ -1,5 +1,5 @@
 //! The drops that come through the water of puddles near the eye, found a span of time and a square of the world at a time and kept from
-//! picture to picture.
+//! picture to picture. Those of the next span are looked for beside the pictures before it.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -7,6 +7,7 @@ use std::sync::Arc;
 use downpour_math::ops::f64 as ops;
 use downpour_shaders::render::puddle_rings::PUDDLE_RINGS_LIFE;
 use downpour_shaders::render::puddle_water::PUDDLE_WATER_MIN_DEPTH;
+use downpour_sim::field::RainField;
 use downpour_sim::impacts::Crossing;
 use glam::{DVec2, DVec3, Vec2};
 use rayon::prelude::*;
@@ -15,6 +16,7 @@ use super::map::{PuddleMap, turned};
 use super::rings::{REACH_M, RainOnWater};
 use super::wet_samples::WetSamples;
 use super::{PuddleError, PuddleLook};
+use crate::background::Background;
 
 /// Span of time whose drops are found together, s: whole sixteenths of a second.
 const CHUNK_S: f64 = 0.25;
@@ -84,6 +86,8 @@ pub(super) struct RingDrops {
     /// Smallest diameter that is looked for, and the largest that there is, m.
     diameters: [f64; 2],
     found: BTreeMap<Block, Found>,
+    /// Those of the next span that are being looked for.
+    begun: BTreeMap<Block, Background<Result<Found, PuddleError>>>,
     /// Of each puddle with rings.
     shores: BTreeMap<usize, Shores>,
     /// Of the maps.
@@ -98,6 +102,7 @@ impl RingDrops {
         Self {
             diameters,
             found: BTreeMap::new(),
+            begun: BTreeMap::new(),
             shores: BTreeMap::new(),
             origin: DVec3::ZERO,
             last_s: f64::NAN,
@@ -114,7 +119,7 @@ impl RingDrops {
         self.shores.values().map(|shores| shores.wet.area_near(middle)).sum()
     }
 
-    /// Finds the drops whose rings are in a picture, and some of those of the pictures to come; forgets all others.
+    /// Finds the drops whose rings are in a picture, and begins to look for some of those of the pictures to come; forgets all others.
     pub(super) fn find(
         &mut self,
         rain: &RainOnWater<'_>,
@@ -123,6 +128,7 @@ impl RingDrops {
     ) -> Result<(), PuddleError> {
         if self.origin != origin {
             self.found.clear();
+            self.begun.clear();
             self.shores.clear();
             self.origin = origin;
         }
@@ -134,52 +140,70 @@ impl RingDrops {
             wanted.extend(blocks(k, map, shores, rain));
         }
         let mut before = std::mem::take(&mut self.found);
+        let mut begun = std::mem::take(&mut self.begun);
         let mut anew = Vec::new();
-        let is_unknown = |wanted: &&Wanted| wanted.is_next && !before.contains_key(&wanted.block);
+        let is_unknown = |wanted: &&Wanted| {
+            wanted.is_next && !before.contains_key(&wanted.block) && !begun.contains_key(&wanted.block)
+        };
         let next = wanted.iter().filter(is_unknown).min_by_key(|wanted| wanted.block.2);
         let pictures = next.map_or(1, |wanted| {
             pictures_before(wanted, &puddles[wanted.block.0].0, [self.last_s, rain.time_s])
         });
+        // More at once would keep the picture waiting for a thread.
         let mut room = wanted.iter().filter(is_unknown).count().div_ceil(pictures);
         self.last_s = rain.time_s;
         for Wanted { block, part, is_next } in wanted {
-            let known = before
-                .remove(&block)
-                .filter(|found| found.part[0].cmple(part[0]).all() && found.part[1].cmpge(part[1]).all());
             let map = &puddles[block.0].0;
+            let task = begun.remove(&block);
+            if is_next && !before.contains_key(&block) {
+                let task = task.or_else(|| {
+                    room = room.checked_sub(1)?;
+                    let (field, map, diameters) = (Arc::clone(rain.field), map.clone(), self.diameters);
+                    let look = move || find_block((&field, &map), origin, (block, part), None, diameters);
+                    Some(Background::begin(look))
+                });
+                self.begun.extend(task.map(|task| (block, task)));
+                continue;
+            }
+            // An error of a search before its time says nothing: it is looked for again.
+            let known = before.remove(&block).or_else(|| task.and_then(|task| task.finish().ok()));
+            let known = known
+                .filter(|found| found.part[0].cmple(part[0]).all() && found.part[1].cmpge(part[1]).all());
             match known {
                 Some(found) if Arc::ptr_eq(&found.cells, &map.cells) => {
                     self.found.insert(block, found);
                 }
-                None if is_next && room == 0 => {}
-                known => {
-                    room -= usize::from(is_next && known.is_none());
-                    anew.push((block, part, is_next, known));
-                }
+                known => anew.push((block, part, known)),
             }
         }
-        let found = anew.into_par_iter().filter_map(|(block, part, is_next, known)| {
-            let map = &puddles[block.0].0;
-            let span_s = [block.2, block.2 + 1].map(|k| k as f64 * CHUNK_S);
-            let height = origin.y + f64::from(map.ground.middle.y);
-            let known = known.map(|found| Ok((found.part, found.crossings)));
-            let crossings = known.unwrap_or_else(|| {
-                Ok((part, rain.field.crossings(part, height, span_s, self.diameters[0])?))
-            });
-            match crossings {
-                Ok((part, crossings)) => {
-                    let impacts = impacts(map, origin, &crossings, self.diameters);
-                    Some(Ok((block, Found { part, crossings, impacts, cells: Arc::clone(&map.cells) })))
-                }
-                // There may be no next span: time has an end.
-                Err(_) if is_next => None,
-                Err(error) => Some(Err(error)),
-            }
+        let found = anew.into_par_iter().map(|(block, part, known)| {
+            let of = (&**rain.field, &puddles[block.0].0);
+            Ok((block, find_block(of, origin, (block, part), known, self.diameters)?))
         });
         let found = found.collect::<Result<Vec<_>, PuddleError>>()?;
         self.found.extend(found);
         Ok(())
     }
+}
+
+/// The drops of a block that come to the water of a map, of which those that come through the plane may be known.
+fn find_block(
+    (field, map): (&RainField, &PuddleMap),
+    origin: DVec3,
+    (block, part): (Block, Corners),
+    known: Option<Found>,
+    diameters: [f64; 2],
+) -> Result<Found, PuddleError> {
+    let (part, crossings) = match known {
+        Some(found) => (found.part, found.crossings),
+        None => {
+            let span_s = [block.2, block.2 + 1].map(|k| k as f64 * CHUNK_S);
+            let height = origin.y + f64::from(map.ground.middle.y);
+            (part, field.crossings(part, height, span_s, diameters[0])?)
+        }
+    };
+    let impacts = impacts(map, origin, &crossings, diameters);
+    Ok(Found { part, crossings, impacts, cells: Arc::clone(&map.cells) })
 }
 
 /// A block whose drops are wanted.

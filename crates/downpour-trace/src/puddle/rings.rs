@@ -82,7 +82,7 @@ pub struct Rings {
 #[derive(Clone, Copy, Debug)]
 pub struct RainOnWater<'a> {
     /// The drops.
-    pub field: &'a RainField,
+    pub field: &'a Arc<RainField>,
     /// Their present sizes; `None`: those of the heaviest rain.
     pub sizes: Option<&'a DropSizeDistribution>,
     /// Time, s.
@@ -389,7 +389,7 @@ mod tests {
         scene
     }
 
-    fn on_water(field: &RainField, time_s: f64) -> RainOnWater<'_> {
+    fn on_water(field: &Arc<RainField>, time_s: f64) -> RainOnWater<'_> {
         RainOnWater { field, sizes: None, time_s, eye: DVec3::new(1.0, 1.8, 0.0) }
     }
 
@@ -397,7 +397,7 @@ mod tests {
     #[test]
     fn rings_do_not_depend_on_pictures_before() {
         let law = rain(60.0);
-        let field = RainField::new(&law, SEED).unwrap();
+        let field = Arc::new(RainField::new(&law, SEED).unwrap());
         let puddles = |wet: usize| {
             let (map, look) = pool();
             let cells = (0..1600).map(|i| {
@@ -431,7 +431,7 @@ mod tests {
     fn rings_have_their_part_of_the_slope() {
         for rate in [10.0, 40.0] {
             let law = rain(rate);
-            let field = RainField::new(&law, SEED).unwrap();
+            let field = Arc::new(RainField::new(&law, SEED).unwrap());
             let mut ripples = Ripples::new(Some(&law), SEED, 3.0).unwrap();
             let mut rings = Rings::new(&law).unwrap();
             let puddles = [pool()];
@@ -469,7 +469,7 @@ mod tests {
     #[test]
     fn rings_are_where_drops_fall() {
         let law = rain(20.0);
-        let field = RainField::new(&law, SEED).unwrap();
+        let field = Arc::new(RainField::new(&law, SEED).unwrap());
         let mut rings = Rings::new(&law).unwrap();
         let time_s = 4.3;
         let rows = rings.find(&on_water(&field, time_s), &[pool()], DVec3::ZERO).unwrap();

@@ -1,6 +1,9 @@
 //! Ripples of rain on the water of all puddles: a lattice, and its slopes in levels. On a device both stay there.
 
+use std::sync::Arc;
+
 use downpour_drop::distribution::DropSizeDistribution;
+use downpour_lattice::LatticeError;
 #[cfg(feature = "wgpu")]
 use downpour_lattice::gpu::puddle::{GpuPuddle, PuddleKernels};
 use downpour_lattice::puddle::{
@@ -10,6 +13,8 @@ use downpour_math::pyramid::pyramid_append;
 use downpour_wind::Keyed;
 
 use super::PuddleError;
+#[cfg(feature = "wgpu")]
+use super::craters_ahead::{CratersAhead, finished};
 
 /// Cells along an edge of the lattice: a power of two, so that each level has half of those of the one before.
 const CELLS: u32 = 512;
@@ -26,9 +31,13 @@ const STEP_S: f64 = 5.0e-3;
 /// Ripples older than this have gone, s.
 pub(super) const MEMORY_S: f64 = 2.5;
 
+/// Steps after those of a picture whose craters are made beside it, at most.
+#[cfg(feature = "wgpu")]
+const MAX_AHEAD: i64 = 16;
+
 /// Steps that a device gets in one submission.
 #[cfg(feature = "wgpu")]
-const STEPS_TOGETHER: usize = 50;
+const STEPS_TOGETHER: i64 = 50;
 
 /// Part of the kinetic energy of a rain that its smallest drops bring, which make no waves.
 const WEAKEST_PART: f64 = 0.01;
@@ -43,7 +52,7 @@ pub struct Ripples {
     form: PuddleForm,
     /// True if nothing has fallen since the water was level: steps leave it so.
     is_level: bool,
-    rain: Option<PuddleRain>,
+    rain: Option<Arc<PuddleRain>>,
     changes: Option<Changes>,
     /// Number of the last step, counted from time 0.
     step: i64,
@@ -58,6 +67,8 @@ enum Lattice {
         lattice: Box<GpuPuddle>,
         /// Bytes that the lattice had uploaded when its slopes were last asked for.
         counted: std::cell::Cell<u64>,
+        /// Craters of the next steps.
+        ahead: CratersAhead,
     },
 }
 
@@ -67,25 +78,6 @@ impl Lattice {
             Self::Cpu(lattice) => **lattice = Puddle::new(&options(form))?,
             #[cfg(feature = "wgpu")]
             Self::Gpu { lattice, .. } => lattice.set_level()?,
-        }
-        Ok(())
-    }
-
-    /// Steps, each after the impacts in it.
-    fn rain(&mut self, impacts: &[Vec<Impact>]) -> Result<(), PuddleError> {
-        match self {
-            Self::Cpu(lattice) => {
-                for impacts in impacts {
-                    lattice.seed(impacts)?;
-                    lattice.step(STEP_S as f32)?;
-                }
-            }
-            #[cfg(feature = "wgpu")]
-            Self::Gpu { lattice, .. } => {
-                for impacts in impacts.chunks(STEPS_TOGETHER) {
-                    lattice.rain(impacts, STEP_S as f32)?;
-                }
-            }
         }
         Ok(())
     }
@@ -103,7 +95,7 @@ struct Changes {
 
 impl Changes {
     /// Makes a rain that of a step: `None` in a dry time.
-    fn follow(&mut self, step: i64, rain: &mut Option<PuddleRain>) -> Result<(), PuddleError> {
+    fn follow(&mut self, step: i64, rain: &mut Option<Arc<PuddleRain>>) -> Result<(), PuddleError> {
         let number = step.div_euclid(STEPS_OF_RATE);
         if self.number.replace(number) == Some(number) {
             return Ok(());
@@ -114,7 +106,7 @@ impl Changes {
         if rate > 0.0 {
             let heaviest = &self.heaviest;
             let sizes = DropSizeDistribution::with_options(heaviest.law(), rate, heaviest.options())?;
-            *rain = Some(rain_on_water(&sizes, self.seed));
+            *rain = Some(Arc::new(rain_on_water(&sizes, self.seed)));
         }
         Ok(())
     }
@@ -128,7 +120,7 @@ impl Ripples {
     pub fn new(rain: Option<&DropSizeDistribution>, seed: u64, time_s: f64) -> Result<Self, PuddleError> {
         let form = PuddleForm::GravityCapillary;
         let lattice = Lattice::Cpu(Box::new(Puddle::new(&options(form))?));
-        let rain = rain.map(|rain| rain_on_water(rain, seed));
+        let rain = rain.map(|rain| Arc::new(rain_on_water(rain, seed)));
         Ok(Self { lattice, form, is_level: true, rain, changes: None, step: step_of(time_s - MEMORY_S) })
     }
 
@@ -150,7 +142,8 @@ impl Ripples {
     #[cfg(feature = "wgpu")]
     pub fn move_to_device(&mut self, kernels: &PuddleKernels) -> Result<(), PuddleError> {
         let lattice = Box::new(GpuPuddle::with_kernels(kernels, &options(self.form))?);
-        self.lattice = Lattice::Gpu { lattice, counted: std::cell::Cell::default() };
+        let ahead = CratersAhead::new(lattice.crater_maker());
+        self.lattice = Lattice::Gpu { lattice, counted: std::cell::Cell::default(), ahead };
         self.is_level = true;
         Ok(())
     }
@@ -191,23 +184,59 @@ impl Ripples {
             self.lattice.set_level(self.form)?;
             (self.is_level, self.step) = (true, anew);
         }
-        let extent = [CELLS as f32 * CELL_M; 2];
-        let mut steps = Vec::new();
-        while self.step < until {
-            if let Some(changes) = &mut self.changes {
-                changes.follow(self.step, &mut self.rain)?;
+        match &mut self.lattice {
+            Lattice::Cpu(lattice) => {
+                while self.step < until {
+                    follow(&mut self.changes, self.step, &mut self.rain)?;
+                    let rain = self.rain.as_ref();
+                    let impacts = rain.map_or(Ok(Vec::new()), |rain| impacts_of(rain, self.step))?;
+                    self.is_level &= impacts.is_empty();
+                    if !self.is_level {
+                        lattice.seed(&impacts)?;
+                        lattice.step(STEP_S as f32)?;
+                    }
+                    self.step += 1;
+                }
+                Ok(())
             }
-            let rain = self.rain.as_ref();
-            let impacts =
-                rain.map(|rain| rain.impacts(extent, self.step as u64, STEP_S as f32)).transpose()?;
-            let impacts = impacts.unwrap_or_default();
-            self.is_level &= impacts.is_empty();
-            if !self.is_level {
-                steps.push(impacts);
-            }
-            self.step += 1;
+            #[cfg(feature = "wgpu")]
+            Lattice::Gpu { .. } => self.rain_on_device(until),
         }
-        self.lattice.rain(&steps)
+    }
+
+    /// Steps the rain of a lattice on a device up to a step.
+    #[cfg(feature = "wgpu")]
+    fn rain_on_device(&mut self, until: i64) -> Result<(), PuddleError> {
+        let Lattice::Gpu { lattice, ahead, .. } = &mut self.lattice else { return Ok(()) };
+        let first = self.step;
+        while self.step < until {
+            let steps = self.step..until.min(self.step + STEPS_TOGETHER);
+            let mut craters = Vec::new();
+            for step in steps.clone() {
+                follow(&mut self.changes, step, &mut self.rain)?;
+                craters.push(ahead.take(step, self.rain.as_ref()));
+            }
+            let mut craters = finished(craters)?;
+            if self.is_level {
+                // Steps leave level water as it is.
+                let dry = craters.iter().take_while(|craters| craters.is_empty()).count();
+                craters.drain(..dry);
+            }
+            self.is_level &= craters.is_empty();
+            if !self.is_level {
+                lattice.rain(&craters, STEP_S as f32)?;
+            }
+            self.step = steps.end;
+        }
+        // The next picture is as far away as the last one, and has the same rain unless that changes.
+        let next = until..until + (until - first).min(MAX_AHEAD) + 1;
+        let number = |step: i64| Some(step.div_euclid(STEPS_OF_RATE));
+        let is_known =
+            |changes: &Changes| changes.number == number(until) && number(next.end) == number(until);
+        if until > first && self.changes.as_ref().is_none_or(is_known) {
+            ahead.begin(next, self.rain.as_ref());
+        }
+        Ok(())
     }
 
     /// Cells along an edge of the finest level, the number of levels, and the edge of a cell (m).
@@ -231,7 +260,7 @@ impl Ripples {
     #[cfg(feature = "wgpu")]
     #[must_use]
     pub fn on_device(&self) -> Option<crate::gpu::RipplesOnGpu> {
-        let Lattice::Gpu { lattice, counted } = &self.lattice else { return None };
+        let Lattice::Gpu { lattice, counted, .. } = &self.lattice else { return None };
         let bytes_uploaded = lattice.bytes_uploaded() - counted.replace(lattice.bytes_uploaded());
         let (_, levels, cell_m) = self.shape();
         (!self.is_level).then(|| crate::gpu::RipplesOnGpu {
@@ -242,6 +271,20 @@ impl Ripples {
             bytes_uploaded,
         })
     }
+}
+
+/// Makes a rain that of a step, if it changes.
+fn follow(
+    changes: &mut Option<Changes>,
+    step: i64,
+    rain: &mut Option<Arc<PuddleRain>>,
+) -> Result<(), PuddleError> {
+    changes.as_mut().map_or(Ok(()), |changes| changes.follow(step, rain))
+}
+
+/// Impacts of a step on the lattice.
+pub(super) fn impacts_of(rain: &PuddleRain, step: i64) -> Result<Vec<Impact>, LatticeError> {
+    rain.impacts([CELLS as f32 * CELL_M; 2], step as u64, STEP_S as f32)
 }
 
 /// Impacts of a rain that make waves.
