@@ -18,7 +18,7 @@ use downpour_mask::gpu::{DropUniform, ModelUniform};
 use downpour_math::pyramid::PyramidLevel;
 use downpour_render::camera::Camera;
 use downpour_render::glass::{GlassPictureDrop, GlassPictureFrame, GlassPictureLight};
-use downpour_render::glow::GlowLevel;
+use downpour_render::glow::{GlowCoarse, GlowLevel};
 use downpour_render::host::{HostBlendFrame, HostEnvironmentFrame, HostPlateFrame};
 use downpour_render::rain::layers::{LayersFrame, LayersLamp};
 use downpour_render::rain::light::DropLightFrame;
@@ -142,6 +142,7 @@ fn hosts() -> Vec<Host> {
             width, height, curve, exposure, has_glow, has_edges, pad_a, pad_b),
         host!(GlowLevel as "GlowLevel" in &render::glow::GLOW,
             size, coarse, first, coarse_first, weight, coarse_weight, fraction, extinction, is_added, offset),
+        host!(GlowCoarse as "GlowCoarse" in &render::glow::GLOW, count, unused_1, unused_2, unused_3, levels),
         host!(MediumFrame as "MediumFrame" in &render::medium::MEDIUM,
             depths, rise, all, center, region, size, flatness, eye, open, columns, rows, lit, shape, pane, fog, fog_phase, axis, seed, across, is_grainy,
             beside, unused, shells),

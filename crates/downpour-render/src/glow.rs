@@ -19,10 +19,10 @@ mod spread;
 use downpour_weather::{GlowFilter, Weather};
 
 pub use kernel::GlowKernel;
-pub use plan::GlowLevel;
 pub(crate) use plan::GlowPlan;
 #[cfg(feature = "wgpu")]
 pub(crate) use plan::GlowStep;
+pub use plan::{GlowCoarse, GlowLevel};
 pub use spread::{
     glow_down_weights, glow_fraction, glow_mirrored, glow_overlap, glow_taken, glow_up_first, glow_up_weight,
 };

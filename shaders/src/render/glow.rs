@@ -8,14 +8,22 @@ use crate::{Kernel, Module};
 pub const MODULES: &[&Module] = &[&GLOW_CONSTANTS, &GLOW];
 
 /// Every kernel of this file.
-pub const KERNELS: &[&Kernel] =
-    &[&GLOW_TAKE_KERNEL, &GLOW_DOWN_KERNEL, &GLOW_UP_KERNEL, &GLOW_KAWASE_KERNEL, &GLOW_ADD_KERNEL];
+pub const KERNELS: &[&Kernel] = &[
+    &GLOW_TAKE_KERNEL,
+    &GLOW_DOWN_KERNEL,
+    &GLOW_UP_KERNEL,
+    &GLOW_COARSE_KERNEL,
+    &GLOW_KAWASE_KERNEL,
+    &GLOW_ADD_KERNEL,
+];
 
 shared_constants! {
     /// Numbers of the glow.
     GLOW_CONSTANTS at "render/glow constants" {
         /// Largest radiance that is taken.
         GLOW_BRIGHTEST: f32 = 1.0e12;
+        /// Steps between coarse levels, at most: down and up twelve of them.
+        GLOW_COARSE_STEPS: u32 = 24;
     }
 }
 
@@ -38,6 +46,10 @@ pub static GLOW_DOWN_KERNEL: Kernel = kernel("main_glow_down");
 
 /// A level with the coarser ones: one invocation per texel.
 pub static GLOW_UP_KERNEL: Kernel = kernel("main_glow_up");
+
+/// Several steps down and up between coarse levels: one workgroup.
+pub static GLOW_COARSE_KERNEL: Kernel =
+    Kernel { entry: "main_glow_coarse", module: &GLOW, workgroup: [256, 1, 1] };
 
 /// A pass of Kawase's filter: one invocation per pixel.
 pub static GLOW_KAWASE_KERNEL: Kernel = kernel("main_glow_kawase");

@@ -19,15 +19,28 @@ struct GlowLevel {
     extinction: f32,
     // 1: adds to the glow that is there.
     is_added: u32,
-    // Offset of Kawase's taps, in texels.
+    // Offset of Kawase's taps, in texels; 1 in a step of GlowCoarse that goes up.
     offset: u32,
 }
 
-@group(0) @binding(0) var<uniform> glow_level: GlowLevel;
+// Steps between coarse levels, which one workgroup takes: as many dispatches would take longer to begin than to end.
+struct GlowCoarse {
+    count: u32,
+    unused_1: u32,
+    unused_2: u32,
+    unused_3: u32,
+    levels: array<GlowLevel, GLOW_COARSE_STEPS>,
+}
+
+@group(0) @binding(0) var<uniform> glow_given: GlowLevel;
 @group(0) @binding(1) var<storage, read_write> glow_texels: array<vec4f>;
 @group(0) @binding(2) var<storage, read> glow_plate: array<vec4f>;
 @group(0) @binding(3) var<storage, read> glow_rain: array<vec4f>;
 @group(0) @binding(4) var<storage, read_write> glow_target: array<vec4f>;
+@group(0) @binding(5) var<uniform> glow_coarse: GlowCoarse;
+
+// The level that is made.
+var<private> glow_level: GlowLevel;
 
 // Fraction of the light of a pixel that is taken, whose scene is at a distance, m.
 fn glow_fraction(level: GlowLevel, distance: f32) -> f32 {
@@ -130,6 +143,7 @@ fn glow_kawase(x: u32, y: u32) -> vec4f {
 
 @compute @workgroup_size(8, 8, 1)
 fn main_glow_take(@builtin(global_invocation_id) id: vec3u) {
+    glow_level = glow_given;
     if id.x < glow_level.size.x && id.y < glow_level.size.y {
         let i = id.y * glow_level.size.x + id.x;
         glow_texels[i] = glow_taken(glow_level, glow_plate[i], glow_rain[i], glow_target[i]);
@@ -138,6 +152,7 @@ fn main_glow_take(@builtin(global_invocation_id) id: vec3u) {
 
 @compute @workgroup_size(8, 8, 1)
 fn main_glow_down(@builtin(global_invocation_id) id: vec3u) {
+    glow_level = glow_given;
     if id.x < glow_level.coarse.x && id.y < glow_level.coarse.y {
         glow_texels[glow_level.coarse_first + id.y * glow_level.coarse.x + id.x] = glow_down(id.x, id.y);
     }
@@ -145,14 +160,35 @@ fn main_glow_down(@builtin(global_invocation_id) id: vec3u) {
 
 @compute @workgroup_size(8, 8, 1)
 fn main_glow_up(@builtin(global_invocation_id) id: vec3u) {
+    glow_level = glow_given;
     if id.x < glow_level.size.x && id.y < glow_level.size.y {
         let i = glow_level.first + id.y * glow_level.size.x + id.x;
         glow_texels[i] = glow_level.weight * glow_texels[i] + glow_level.coarse_weight * glow_up(id.x, id.y);
     }
 }
 
+@compute @workgroup_size(256, 1, 1)
+fn main_glow_coarse(@builtin(local_invocation_index) local: u32) {
+    for (var k = 0u; k < glow_coarse.count; k += 1u) {
+        glow_level = glow_coarse.levels[k];
+        let goes_up = glow_level.offset == 1u;
+        let size = select(glow_level.coarse, glow_level.size, goes_up);
+        for (var i = local; i < size.x * size.y; i += 256u) {
+            if goes_up {
+                let own = glow_level.weight * glow_texels[glow_level.first + i];
+                glow_texels[glow_level.first + i] = own + glow_level.coarse_weight * glow_up(i % size.x, i / size.x);
+            } else {
+                glow_texels[glow_level.coarse_first + i] = glow_down(i % size.x, i / size.x);
+            }
+        }
+        storageBarrier();
+        workgroupBarrier();
+    }
+}
+
 @compute @workgroup_size(8, 8, 1)
 fn main_glow_kawase(@builtin(global_invocation_id) id: vec3u) {
+    glow_level = glow_given;
     if id.x < glow_level.size.x && id.y < glow_level.size.y {
         glow_texels[glow_level.coarse_first + id.y * glow_level.size.x + id.x] = glow_kawase(id.x, id.y);
     }
@@ -161,6 +197,7 @@ fn main_glow_kawase(@builtin(global_invocation_id) id: vec3u) {
 // Adds what comes to a pixel, less what was taken from it.
 @compute @workgroup_size(8, 8, 1)
 fn main_glow_add(@builtin(global_invocation_id) id: vec3u) {
+    glow_level = glow_given;
     if id.x < glow_level.size.x && id.y < glow_level.size.y {
         let i = id.y * glow_level.size.x + id.x;
         let before = select(vec4f(0.0), glow_target[i], glow_level.is_added == 1u);

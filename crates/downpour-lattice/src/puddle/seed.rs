@@ -176,7 +176,7 @@ impl PuddleSeed {
 struct CraterProfile(Vec<[f32; 2]>);
 
 /// Nodes of it in a length.
-const NODES_PER_LENGTH: f32 = 512.0;
+const NODES_PER_LENGTH: f32 = 1024.0;
 
 static CRATER_PROFILE: LazyLock<CraterProfile> = LazyLock::new(|| {
     let node = |k: u16| {

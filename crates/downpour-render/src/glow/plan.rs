@@ -2,6 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use downpour_math::pyramid::{PyramidLevel, PyramidRounding, pyramid_levels};
+use downpour_shaders::render::glow::GLOW_COARSE_STEPS;
 use downpour_weather::GlowFilter;
 
 use super::{Glow, GlowKernel};
@@ -37,8 +38,24 @@ pub struct GlowLevel {
     pub extinction: f32,
     /// 1: adds to the glow that is there.
     pub is_added: u32,
-    /// Offset of Kawase's taps, in texels.
+    /// Offset of Kawase's taps, in texels; 1 in a step of [`GlowCoarse`] that goes up.
     pub offset: u32,
+}
+
+/// Uniforms of steps between coarse levels. The same layout as `GlowCoarse` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct GlowCoarse {
+    /// Number of steps.
+    pub count: u32,
+    /// 0.
+    pub unused_1: u32,
+    /// 0.
+    pub unused_2: u32,
+    /// 0.
+    pub unused_3: u32,
+    /// The steps, in their order: those that go up have an offset of 1.
+    pub levels: [GlowLevel; GLOW_COARSE_STEPS as usize],
 }
 
 /// Kind of a pass.

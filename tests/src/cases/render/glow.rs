@@ -8,7 +8,8 @@ use downpour_render::gpu::GlowPipeline;
 use downpour_render::picture::Picture;
 use downpour_shaders::Kernel;
 use downpour_shaders::render::glow::{
-    GLOW_ADD_KERNEL, GLOW_DOWN_KERNEL, GLOW_KAWASE_KERNEL, GLOW_TAKE_KERNEL, GLOW_UP_KERNEL,
+    GLOW_ADD_KERNEL, GLOW_COARSE_KERNEL, GLOW_DOWN_KERNEL, GLOW_KAWASE_KERNEL, GLOW_TAKE_KERNEL,
+    GLOW_UP_KERNEL,
 };
 use downpour_weather::GlowFilter;
 use glam::Vec3;
@@ -18,15 +19,15 @@ use crate::function::Run;
 use crate::signature::WordKind;
 use crate::{KernelCase, Tol};
 
-/// Odd sizes, among them those whose halves are odd.
-const SIZE: [u32; 2] = [45, 27];
+/// Odd sizes, among them those whose halves are odd; the second has levels that are not coarse.
+const SIZES: [[u32; 2]; 2] = [[45, 27], [150, 91]];
 
 /// The glow of random pixels: radiance over five decades, some of the sky.
-fn glow_run(gpu: &Gpu, glow: &Glow) -> Result<Run, GpuError> {
+fn glow_run(gpu: &Gpu, size: [u32; 2], glow: &Glow) -> Result<Run, GpuError> {
     let viewpoint = Viewpoint { eye: Vec3::ZERO, forward: Vec3::NEG_Z, up: Vec3::Y, fov_y: 0.8 };
-    let camera = viewpoint.camera(SIZE, 0).expect("a camera");
+    let camera = viewpoint.camera(size, 0).expect("a camera");
     let random = |seed: u32| {
-        (0..SIZE[0] * SIZE[1]).map(move |i| rng_draw([seed, 31], i, 0, 0).map(rng_unit)).enumerate()
+        (0..size[0] * size[1]).map(move |i| rng_draw([seed, 31], i, 0, 0).map(rng_unit)).enumerate()
     };
     let plate: Vec<[f32; 4]> = random(1)
         .map(|(i, [r, g, b, at])| {
@@ -36,7 +37,7 @@ fn glow_run(gpu: &Gpu, glow: &Glow) -> Result<Run, GpuError> {
         .collect();
     let rain: Vec<[f32; 4]> = random(2).map(|(_, row)| row).collect();
     let mut picture = Picture {
-        size: SIZE,
+        size,
         clean: plate,
         rain,
         drops_on_screen: 0,
@@ -58,7 +59,7 @@ fn glow_run(gpu: &Gpu, glow: &Glow) -> Result<Run, GpuError> {
         |texels: &[[f32; 4]]| texels.iter().flat_map(|&[r, g, b, _]| [r, g, b].map(f32::to_bits)).collect();
     Ok(Run {
         arguments: (0..picture.glow.len() as u32)
-            .map(|i| [i % SIZE[0], i / SIZE[0]].map(|c| (c as f32).to_bits()).to_vec())
+            .map(|i| [i % size[0], i / size[0]].map(|c| (c as f32).to_bits()).to_vec())
             .collect(),
         cpu: Cpu(words(&picture.glow)),
         gpu: FromGpu(words(&made)),
@@ -88,17 +89,22 @@ pub(super) fn kernels() -> Vec<KernelCase> {
     };
     vec![
         case("main_glow_take: drops, then glare", &GLOW_TAKE_KERNEL, |gpu| {
-            glow_run(gpu, &Glow { diffraction: Some(DROPS), ..GLARE })
+            glow_run(gpu, SIZES[0], &Glow { diffraction: Some(DROPS), ..GLARE })
         }),
-        case("main_glow_down: glare", &GLOW_DOWN_KERNEL, |gpu| glow_run(gpu, &GLARE)),
+        case("main_glow_down: glare", &GLOW_DOWN_KERNEL, |gpu| glow_run(gpu, SIZES[1], &GLARE)),
         case("main_glow_up: narrow glare", &GLOW_UP_KERNEL, |gpu| {
-            glow_run(gpu, &Glow { width: 0.4, ..GLARE })
+            glow_run(gpu, SIZES[1], &Glow { width: 0.4, ..GLARE })
         }),
+        case("main_glow_coarse: glare", &GLOW_COARSE_KERNEL, |gpu| glow_run(gpu, SIZES[0], &GLARE)),
         case("main_glow_kawase: five passes", &GLOW_KAWASE_KERNEL, |gpu| {
-            glow_run(gpu, &Glow { filter: GlowFilter::Kawase, width: 20.0, ..GLARE })
+            glow_run(gpu, SIZES[0], &Glow { filter: GlowFilter::Kawase, width: 20.0, ..GLARE })
         }),
         case("main_glow_add: drops, then Kawase's passes", &GLOW_ADD_KERNEL, |gpu| {
-            glow_run(gpu, &Glow { filter: GlowFilter::Kawase, width: 9.0, diffraction: Some(DROPS), ..GLARE })
+            glow_run(
+                gpu,
+                SIZES[0],
+                &Glow { filter: GlowFilter::Kawase, width: 9.0, diffraction: Some(DROPS), ..GLARE },
+            )
         }),
     ]
 }
