@@ -52,14 +52,15 @@ fn number_and_water_are_those_of_the_rate() {
     }
 }
 
-/// Without drops that bring a hundredth of the energy, the others are those that they were, and few.
+/// Without drops that bring a hundredth of the energy, the others are those that they were, and less than half of all.
 #[test]
 fn most_drops_bring_next_to_no_energy() {
     let law = rain(100.0);
     let all = PuddleRain::new(&law, 3);
     let told = all.clone().without_weakest(&law, 0.01);
     let energy = |impacts: &[Impact]| -> f64 {
-        impacts.iter().map(|i| f64::from(i.diameter_m).powi(3) * f64::from(i.speed_m_s).powi(2)).sum()
+        let of = |i: &Impact| [i.diameter_m, i.speed_m_s].map(f64::from);
+        impacts.iter().map(of).map(|[d, v]| d * d * d * v * v).sum()
     };
     let (mut count, mut sum) = ([0; 2], [0.0; 2]);
     for step in 0..4 {
@@ -73,7 +74,7 @@ fn most_drops_bring_next_to_no_energy() {
     }
     let left_out = 1.0 - sum[1] / sum[0];
     assert!((0.005..0.015).contains(&left_out), "{left_out} of the energy");
-    assert!(count[1] * 5 < count[0] * 2, "{count:?} drops");
+    assert!(count[1] * 2 < count[0], "{count:?} drops");
     assert_eq!(told.rate(), all.rate());
 }
 
