@@ -21,8 +21,8 @@ use crate::signature::WordKind;
 use crate::words::IntoWords as _;
 use crate::{FunctionCase, KernelCase, Tol};
 
-/// Pictures that whole tiles cover, and that they do not.
-const SIZES: [[u32; 2]; 2] = [[317, 201], [320, 192]];
+/// Pictures with a column and a row more than whole tiles cover, and with none.
+const SIZES: [[u32; 2]; 2] = [[313, 201], [320, 192]];
 const SIZE: [u32; 2] = SIZES[0];
 
 /// Words of a drop.
