@@ -5,6 +5,13 @@ use bytemuck::Pod;
 use crate::{Gpu, GpuError};
 
 impl Gpu {
+    /// Bytes of the largest storage buffer that the device binds as a whole.
+    #[must_use]
+    pub fn max_storage_bytes(&self) -> u64 {
+        let limits = self.device().limits();
+        limits.max_buffer_size.min(limits.max_storage_buffer_binding_size)
+    }
+
     /// Creates a storage buffer with the contents `data`, and with both copy usages.
     ///
     /// # Errors

@@ -218,17 +218,12 @@ impl BufferPool {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner).made
     }
 
-    /// The last buffer of a label that the current frame has.
-    fn last_of(&self, label: &'static str) -> Option<wgpu::Buffer> {
+    /// The last buffer of a label in the current frame, if it is known to hold `bytes` and nothing else.
+    fn last_with(&self, label: &'static str, bytes: &[u8]) -> Option<wgpu::Buffer> {
         let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let nth = kept.used.get(label)?.checked_sub(1)?;
-        kept.buffers.get(label)?.get(nth).cloned()
-    }
-
-    /// True if a buffer is known to begin with `bytes`, and to have nothing else.
-    fn holds(&self, buffer: &wgpu::Buffer, bytes: &[u8]) -> bool {
-        let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        kept.contents.get(buffer).is_some_and(|known| known == bytes)
+        let last = kept.buffers.get(label)?.get(nth)?;
+        kept.contents.get(last).filter(|known| *known == bytes).map(|_| last.clone())
     }
 
     /// Size of a new buffer: with room to grow, as far as the device allows.
@@ -236,11 +231,9 @@ impl BufferPool {
         if usage.contains(wgpu::BufferUsages::UNIFORM) {
             return bytes;
         }
-        let limits = self.gpu.device().limits();
-        let most = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
         let room = if bytes < SMALL { bytes } else { bytes / 4 };
         let wanted = (bytes + room).max(MIN_BYTES).next_multiple_of(256);
-        if wanted <= most { wanted } else { bytes }
+        if wanted <= self.gpu.max_storage_bytes() { wanted } else { bytes }
     }
 }
 
@@ -303,10 +296,8 @@ impl BufferSource for BufferPool {
         least: u64,
         usage: wgpu::BufferUsages,
     ) -> Result<wgpu::Buffer, GpuError> {
-        if let Some(same) =
-            self.last_of(label).filter(|last| last.size() >= least && last.usage().contains(usage))
-            && self.holds(&same, bytes)
-        {
+        let is_fit = |same: &wgpu::Buffer| same.size() >= least && same.usage().contains(usage);
+        if let Some(same) = self.last_with(label, bytes).filter(is_fit) {
             return Ok(same);
         }
         let buffer = self.buffer(label, least.max(bytes.len() as u64), usage)?;

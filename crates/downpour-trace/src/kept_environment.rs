@@ -55,9 +55,10 @@ impl<T> KeptEnvironment<T> {
         }
     }
 
-    /// True if a map that shows the same scene, with as many texels, can go on from this one.
+    /// True if a map that shows the same scene, with as many texels, can go on from this one: then it follows the scene, whose water may have
+    /// changed.
     #[must_use]
-    pub fn fits(&self, scene: &SceneData, frame: &RenderFrame, environment: &EnvironmentFrame) -> bool {
+    pub fn follow(&mut self, scene: &SceneData, frame: &RenderFrame, environment: &EnvironmentFrame) -> bool {
         let before = &self.environment;
         let is_alike = match environment.form {
             // The axes of the camera do not matter.
@@ -70,20 +71,23 @@ impl<T> KeptEnvironment<T> {
         let is_near = |eye: &Option<Vec3>| {
             eye.is_none_or(|eye| eye.distance_squared(frame.camera.eye) < MAX_EYE_DISTANCE * MAX_EYE_DISTANCE)
         };
-        is_alike
-            && bytemuck::bytes_of(&self.frame) == bytemuck::bytes_of(&poseless(frame))
-            && self.eyes.iter().all(is_near)
-            && !SceneChange::between(&self.scene, scene).rest
-    }
-
-    /// The rows that are to be traced for a picture of an eye in a scene that fits: all at first, then some of those that another eye
-    /// has seen, or that show less water.
-    pub fn next(&mut self, scene: &SceneData, eye: Vec3) -> Vec<Range<u32>> {
+        let is_near = self.eyes.iter().all(is_near);
+        let is_seen_alike =
+            is_alike && is_near && bytemuck::bytes_of(&self.frame) == bytemuck::bytes_of(&poseless(frame));
+        if !is_seen_alike {
+            return false;
+        }
         let change = SceneChange::between(&self.scene, scene);
-        if change.water || change.wetness {
+        if !change.rest && (change.water || change.wetness) {
             self.scene = scene.clone();
             self.is_old.fill(true);
         }
+        !change.rest
+    }
+
+    /// The rows that are to be traced for a picture of an eye: all at first, then some of those that another eye has seen, or that show
+    /// other water.
+    pub fn next(&mut self, eye: Vec3) -> Vec<Range<u32>> {
         let count = self.eyes.len();
         let is_first = self.eyes.iter().all(Option::is_none);
         let most = if is_first { count } else { BANDS_PER_PICTURE };
@@ -162,20 +166,20 @@ mod tests {
 
     #[test]
     fn all_rows_come_round() {
-        let Begun { scene, layout, mut map, .. } = begun();
-        assert_eq!(map.next(&scene, Vec3::ZERO), vec![Range { start: 0, end: layout.size }]);
-        assert!(map.next(&scene, Vec3::ZERO).is_empty());
+        let Begun { layout, mut map, .. } = begun();
+        assert_eq!(map.next(Vec3::ZERO), vec![Range { start: 0, end: layout.size }]);
+        assert!(map.next(Vec3::ZERO).is_empty());
         // Four pictures of an eye that has moved make all of it anew, and then nothing is left to do.
         let eye = Vec3::new(0.1, 0.0, 0.0);
-        let mut rows: Vec<u32> = (0..4).flat_map(|_| map.next(&scene, eye).into_iter().flatten()).collect();
+        let mut rows: Vec<u32> = (0..4).flat_map(|_| map.next(eye).into_iter().flatten()).collect();
         rows.sort_unstable();
         assert_eq!(rows, (0..layout.size).collect::<Vec<u32>>());
-        assert!(map.next(&scene, eye).is_empty());
+        assert!(map.next(eye).is_empty());
         // While the eye goes on moving, each row has its turn as well.
         let mut last = vec![0; layout.size as usize];
         for step in 1..20u32 {
             let eye = Vec3::new(0.1 + 0.01 * step as f32, 0.0, 0.0);
-            for row in map.next(&scene, eye).into_iter().flatten() {
+            for row in map.next(eye).into_iter().flatten() {
                 last[row as usize] = step;
             }
             assert!(step < 4 || last.iter().all(|traced| step - traced < 4), "{step}: {last:?}");
@@ -185,18 +189,18 @@ mod tests {
     #[test]
     fn a_map_goes_on_while_only_its_eye_moves() {
         let Begun { scene, frame, layout, mut map } = begun();
-        map.next(&scene, Vec3::ZERO);
+        map.next(Vec3::ZERO);
         // It turns and walks; a jump is too far.
         for (eye, fits) in [(Vec3::ZERO, true), (Vec3::X * 0.3, true), (Vec3::X, false)] {
             let moved = frame_of(&scene, eye, Vec3::X, 2);
             let turned = EnvironmentFrame::new(&moved.camera, &RainOptions::default());
-            assert_eq!(map.fits(&scene, &moved, &turned), fits, "{eye}");
+            assert_eq!(map.follow(&scene, &moved, &turned), fits, "{eye}");
         }
         let smaller =
             EnvironmentFrame::new(&frame.camera, &RainOptions { capture_size: 64, ..RainOptions::default() });
-        assert!(!map.fits(&scene, &frame, &smaller));
+        assert!(!map.follow(&scene, &frame, &smaller));
         let brighter = SceneBuilder::new().build(&SkyLight::uniform([2.0; 3]));
-        assert!(!map.fits(&brighter, &frame, &layout));
+        assert!(!map.follow(&brighter, &frame, &layout));
     }
 
     /// Water that rises is shown a few pictures later; waves on it are not.
@@ -225,8 +229,8 @@ mod tests {
         set(&mut scene, 0.01, 0.0, look);
         let mut map = KeptEnvironment::new(&scene, &frame, &layout, ());
         let mut rows = |scene: &SceneData| {
-            assert!(map.fits(scene, &frame, &layout));
-            let rows = |_| map.next(scene, Vec3::ZERO).into_iter().flatten().count() as u32;
+            assert!(map.follow(scene, &frame, &layout));
+            let rows = |_| map.next(Vec3::ZERO).into_iter().flatten().count() as u32;
             (0..6).map(rows).collect::<Vec<u32>>()
         };
         let (all, part) = (layout.size, layout.size / 4);

@@ -108,12 +108,12 @@ pub fn render_picture_on(
         0 => (&mut own.0, &mut own.1),
         _ => (&mut kept.environment, &mut kept.plate),
     };
-    let map = kept_map.take().filter(|map| map.fits(scene, &frame, &rain.environment));
+    let map = kept_map.take().and_then(|mut map| map.follow(scene, &frame, &rain.environment).then_some(map));
     let map = kept_map.insert(map.unwrap_or_else(|| {
         let held = EnvironmentMap { texels: Vec::new() };
         KeptEnvironment::new(scene, &frame, &rain.environment, held)
     }));
-    let rows = map.next(scene, camera.eye);
+    let rows = map.next(camera.eye);
     if !rows.is_empty() {
         timed(&mut passes, "capture", || trace_rows(&mut map.held, scene, &frame, &rain.environment, rows));
     }

@@ -200,11 +200,7 @@ impl CraterProfile {
 }
 
 /// Craters of impacts.
-pub(crate) fn craters<'a>(
-    model: &Model,
-    impacts: impl IntoIterator<Item = &'a Impact>,
-) -> Result<Vec<PuddleSeed>, LatticeError> {
-    let impacts: Vec<&Impact> = impacts.into_iter().collect();
+pub(crate) fn craters(model: &Model, impacts: &[Impact]) -> Result<Vec<PuddleSeed>, LatticeError> {
     impacts.par_iter().with_min_len(MIN_TOGETHER).map(|impact| crater(model, impact)).collect()
 }
 

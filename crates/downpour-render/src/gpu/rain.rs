@@ -117,10 +117,8 @@ impl RainPipeline {
     /// Drops whose lists the device can bind.
     #[must_use]
     pub fn most_drops(&self) -> u32 {
-        let limits = self.gpu.device().limits();
-        let bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         // Lamps light 64 drops per workgroup, of which there are 65 535 along one axis.
-        (bytes / size_of::<ScreenDrop>() as u64).min(64 * 65_535) as u32
+        (self.gpu.max_storage_bytes() / size_of::<ScreenDrop>() as u64).min(64 * 65_535) as u32
     }
 
     /// Brings the masks to the device.

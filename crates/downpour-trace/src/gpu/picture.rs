@@ -543,17 +543,14 @@ impl PictureRenderer {
                 std::iter::once(0..layout.size).collect(),
             ));
         }
-        let map = match kept.take() {
-            Some(map) if map.fits(scene, frame, layout) => map,
-            last => {
-                let bytes = RainPipeline::environment_bytes(rain);
-                let make = || self.rain.environment(&self.gpu, rain);
-                let held = KeptBuffer::after(last.map(|map| map.held), bytes, make)?;
-                KeptEnvironment::new(scene, frame, layout, held)
-            }
-        };
-        let map = kept.insert(map);
-        Ok((map.held.buffer.clone(), map.next(scene, frame.camera.eye)))
+        if !kept.as_mut().is_some_and(|map| map.follow(scene, frame, layout)) {
+            let last = kept.take().map(|map| map.held);
+            let make = || self.rain.environment(&self.gpu, rain);
+            let held = KeptBuffer::after(last, RainPipeline::environment_bytes(rain), make)?;
+            *kept = Some(KeptEnvironment::new(scene, frame, layout, held));
+        }
+        let map = kept.as_mut().expect("one was made");
+        Ok((map.held.buffer.clone(), map.next(frame.camera.eye)))
     }
 
     /// A buffer for the plate of a camera.

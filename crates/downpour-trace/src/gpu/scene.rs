@@ -534,9 +534,7 @@ fn on_device<T: bytemuck::Pod>(
     let bytes: &[u8] = bytemuck::cast_slice(data);
     let moving = if still.is_empty() { 0 } else { data.len() - still.len() };
     let wanted = (bytes.len() + moving * size_of::<T>()) as u64;
-    let limits = buffers.gpu().device().limits();
-    let most = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
-    let size = if wanted <= most { wanted } else { bytes.len() as u64 };
+    let size = if wanted <= buffers.gpu().max_storage_bytes() { wanted } else { bytes.len() as u64 };
     let buffer = buffers.gpu().empty_buffer(label, size, wgpu::BufferUsages::STORAGE)?;
     buffers.write(&buffer, bytes);
     Ok(buffer)

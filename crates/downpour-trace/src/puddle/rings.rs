@@ -11,6 +11,7 @@ use std::sync::Arc;
 use downpour_drop::distribution::DropSizeDistribution;
 use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_lattice::puddle::{DropRing, PuddleForm};
+use downpour_math::bins::Bins;
 use downpour_math::ops::f64 as ops;
 use downpour_shaders::render::puddle_rings::{
     PUDDLE_RINGS_CELL, PUDDLE_RINGS_DISTANCE, PUDDLE_RINGS_DISTANCES, PUDDLE_RINGS_LIFE, PUDDLE_RINGS_ROWS,
@@ -204,9 +205,7 @@ impl Rings {
             let ring = placed_ring(impact, &placing);
             placed.extend(ring.filter(|_| !overlap || known.insert(impact.id)));
         }
-
         let (cells, rings) = binned(&placed);
-
         let part = self.part(rain.sizes.unwrap_or(&self.heaviest), smallest);
         Ok(RingRows { slopes: Arc::clone(&self.slopes), cells, rings, part, corner, middle })
     }
@@ -244,19 +243,9 @@ fn placed_ring(impact: &Impact, placing: &Placing) -> Option<Placed> {
 /// Number of the first ring of each cell, and of one more, and the rings, cell by cell, in an order that does not depend on theirs.
 /// Those for which there is no room are in the last cells.
 fn binned(placed: &[Placed]) -> (Vec<u32>, Vec<[u32; 2]>) {
-    let mut starts = vec![0u32; CELLS * CELLS + 1];
-    for (cell, _) in placed {
-        starts[cell + 1] += 1;
-    }
-    for k in 1..starts.len() {
-        starts[k] += starts[k - 1];
-    }
-    let mut next = starts.clone();
-    let mut rings = vec![[0; 2]; placed.len()];
-    for (cell, words) in placed {
-        rings[next[*cell] as usize] = *words;
-        next[*cell] += 1;
-    }
+    let touched = |ring: u32, touches: &mut dyn FnMut(usize)| touches(placed[ring as usize].0);
+    let Bins { mut starts, items } = Bins::new(CELLS * CELLS, placed.len() as u32, touched);
+    let mut rings: Vec<[u32; 2]> = items.iter().map(|&ring| placed[ring as usize].1).collect();
     for cell in starts.windows(2).filter(|cell| cell[1] - cell[0] > 1) {
         rings[cell[0] as usize..cell[1] as usize].sort_unstable();
     }
