@@ -19,6 +19,7 @@ mod puddle;
 mod puddle_water;
 mod rain;
 mod render;
+mod running_light;
 mod scene;
 mod step;
 mod temporal;
@@ -50,6 +51,7 @@ pub fn functions() -> Vec<FunctionCase> {
         rain::functions(),
         rain::spray::functions(),
         render::functions(),
+        running_light::functions(),
         scene::functions(),
         temporal::functions(),
         step::functions(),
@@ -83,6 +85,7 @@ pub fn kernels() -> Vec<KernelCase> {
         rain::kernels(),
         rain::spray::kernels(),
         render::kernels(),
+        running_light::kernels(),
         scene::kernels(),
         temporal::kernels(),
         step::kernels(),

@@ -46,6 +46,7 @@ use downpour_sim::volume::{VolumeEye, VolumeFrustum};
 use downpour_specimen::gpu::{CameraUniform, LampUniform, SpecimenUniform, StreakUniform};
 use downpour_tests::signature::parse;
 use downpour_trace::data::{RenderCorner, RenderFrame};
+use downpour_trace::running_light::RunningMean;
 use downpour_trace::temporal::TemporalFrame;
 use downpour_trace::trace::{TraceAmbient, TraceSlot};
 use downpour_wind::WindTurbulenceMode;
@@ -100,7 +101,8 @@ fn hosts() -> Vec<Host> {
         host!(RenderCorner as "RenderCorner" in &render::scene::DATA, normal, material, tangent, uv, color),
         host!(TraceSlot as "TraceSlot" in &render::scene::TRACE, position, normal, light, look, factor),
         host!(TraceAmbient as "TraceAmbient" in &render::scene::TRACE, base, mirror),
-        host!(TemporalFrame as "TemporalFrame" in &render::scene::TEMPORAL, camera, shift, turn, is_last, unused_a, unused_b, unused_c),
+        host!(TemporalFrame as "TemporalFrame" in &render::scene::TEMPORAL, camera, shift, turn, is_last, max_weight, max_gloss, unused),
+        host!(RunningMean as "RunningMean" in &render::scene::RUNNING_LIGHT, color, weight, recent, variance),
         host!(PyramidLevel as "PyramidLevel" in &common::PYRAMID, size, source_size, source, target_texel, unused),
         host!(HostPlateFrame as "HostPlateFrame" in &render::host::HOST_PLATE, camera, inverse, clear, scale),
         host!(HostEnvironmentFrame as "HostEnvironmentFrame" in &render::host::HOST_ENVIRONMENT,

@@ -5,6 +5,7 @@ mod impostor;
 mod picture;
 mod plate;
 mod ripples;
+mod running_light;
 mod scene;
 mod temporal;
 
@@ -16,6 +17,7 @@ pub use picture::{
 };
 pub use plate::ScenePlate;
 pub use ripples::RipplesOnGpu;
+pub use running_light::{RunningLightPass, RunningLightPipeline, RunningOnGpu};
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 pub use scene::SampleDispatches;

@@ -8,6 +8,7 @@ use downpour_render::camera::Camera;
 use downpour_render::refine::{refine_shift, shifted};
 
 use crate::data::{RenderFrame, SceneData};
+use crate::running_light::RunningFrame;
 use crate::scene_change::SceneChange;
 use crate::temporal::LightWindow;
 
@@ -23,6 +24,9 @@ pub struct PlateUse {
     /// Frames of a clip over which the light of sky and surfaces is averaged ([`temporal`](crate::temporal)). A plate that is refined is
     /// not averaged with others.
     pub light: Option<LightWindow>,
+    /// Frames over which the light of a plate that may stay goes on from picture to picture while the eye or the scene moves
+    /// ([`running_light`](crate::running_light)).
+    pub running: Option<RunningFrame>,
 }
 
 impl PlateUse {
@@ -30,6 +34,12 @@ impl PlateUse {
     #[must_use]
     pub fn window(&self) -> Option<LightWindow> {
         self.light.filter(|_| self.kept_frames == 0)
+    }
+
+    /// Frames from which the light of the plate goes on: none of one that is not kept.
+    #[must_use]
+    pub fn running(&self) -> Option<RunningFrame> {
+        self.running.filter(|running| self.kept_frames > 0 && running.frames > 1)
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! - [`builder`], [`data`]: a scene as the buffers that the shaders read; [`sky_light`] prepares the sky;
 //! - [`scene`], [`path`], [`scatter`], [`surface`], [`texture`], [`sky`], [`brdf`], `gpu`: what a ray of the camera sees, and the
-//!   light that comes there; [`skylight`] filters it over neighboring pixels, [`temporal`] over the frames of a clip;
+//!   light that comes there; [`skylight`] filters it over neighboring pixels, [`temporal`] over the frames of a clip, [`running_light`] over live frames;
 //! - [`capture`]: radiance from every direction around the eye, for the drops;
 //! - [`emitter`]: surfaces that shine, as lights;
 //! - [`wet`]: surfaces that rain has made wet; [`impostor`]: their reflections as billboards; [`puddle`], [`wet_ground`]: water that
@@ -52,6 +52,7 @@ mod path;
 pub mod path;
 pub mod picture;
 pub mod puddle;
+pub mod running_light;
 #[cfg(not(feature = "parity"))]
 mod scatter;
 #[cfg(feature = "parity")]

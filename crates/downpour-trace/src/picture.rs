@@ -20,6 +20,7 @@ use crate::capture::trace_environment_rows;
 use crate::data::{RenderFrame, SceneData};
 use crate::kept::{KeptPlate, PlateUse};
 use crate::kept_environment::KeptEnvironment;
+use crate::running_light::{PixelRunning, RunningFrame, RunningLight, no_frame_before};
 use crate::scene::SceneView;
 use crate::temporal::{LightHistory, LightWindow, PixelLight};
 use crate::trace::add_light;
@@ -49,6 +50,8 @@ pub struct KeptScene {
     pub environment: Option<KeptEnvironment<EnvironmentMap>>,
     /// Light of the last frames of a clip.
     pub light: LightHistory<PixelLight>,
+    /// Running mean of light that the last picture has left.
+    pub running: Option<RunningLight<PixelRunning>>,
 }
 
 /// Renders a picture on the CPU. The bits do not depend on the number of threads.
@@ -119,12 +122,23 @@ pub fn render_picture_on(
     }
     let plate = kept_plate.take().filter(|plate| plate.shows(scene, &frame));
     let plate = kept_plate.insert(plate.unwrap_or_else(|| KeptPlate::new(scene, &frame, Vec::new())));
-    if let Some((refined, count)) = plate.next(&frame, of.kept_frames) {
+    let next = plate.next(&frame, of.kept_frames);
+    let count = next.as_ref().map(|(_, count)| *count);
+    let running = RunningLight::follow(&mut kept.running, of.running(), scene, count);
+    if let Some((refined, count)) = next {
+        let refined = match kept.running.as_ref().filter(|_| running.is_some()) {
+            Some(before) => before.drawn_anew(&refined),
+            None => refined,
+        };
         let view = SceneView { data: scene, frame: &refined };
         let (mut next, light) = timed(&mut passes, "scene", || view.picture_and_light());
         if let Some(window) = of.window() {
             timed(&mut passes, "temporal filter", || {
                 average_light(&view, &mut next, &window, light, &mut kept.light);
+            });
+        } else if let Some(running) = &running {
+            timed(&mut passes, "temporal filter", || {
+                go_on(&view, &mut next, running, light, &mut kept.running);
             });
         }
         if count == 1 {
@@ -160,6 +174,24 @@ fn average_light(
         picture.par_iter_mut().zip(change).for_each(|(pixel, change)| add_light(pixel, change));
     }
     history.add(window, view.frame.camera, light);
+}
+
+/// Makes the light of a picture the running mean of that of the frames before it and its own, and keeps it for those after it.
+fn go_on(
+    view: &SceneView<'_>,
+    picture: &mut [[f32; 4]],
+    of: &RunningFrame,
+    light: PixelLight,
+    running: &mut Option<RunningLight<PixelRunning>>,
+) {
+    let before = running.take();
+    let (means, change) = match &before {
+        Some(before) => view.running_light(&light, &before.held, &before.before(of)),
+        None => view.running_light(&light, &PixelRunning::default(), &no_frame_before(view.frame)),
+    };
+    picture.par_iter_mut().zip(change).for_each(|(pixel, change)| add_light(pixel, change));
+    let held = PixelRunning { ambient: light.ambient, means };
+    *running = Some(RunningLight::after(before.as_ref(), of, view.data, view.frame, held));
 }
 
 /// Traces rows of an environment map, and makes its coarser levels of them and of those that are there.

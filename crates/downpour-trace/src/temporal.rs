@@ -117,12 +117,12 @@ pub struct TemporalFrame {
     pub turn: u32,
     /// 1: no frame comes after it.
     pub is_last: u32,
+    /// Greatest number of frames of a running mean ([`running_light`](crate::running_light)) that count beside a frame; 0: there is none.
+    pub max_weight: f32,
+    /// The same of what a gloss mirrors.
+    pub max_gloss: f32,
     /// Nothing.
-    pub unused_a: u32,
-    /// Nothing.
-    pub unused_b: u32,
-    /// Nothing.
-    pub unused_c: u32,
+    pub unused: u32,
 }
 
 impl TemporalFrame {
@@ -131,7 +131,7 @@ impl TemporalFrame {
     pub fn new<T>(window: &LightWindow, light: &FrameLight<T>, turn: u32, count: u32) -> Self {
         let shift = (window.origin - light.origin).as_vec3();
         let is_last = u32::from(turn + 1 == count);
-        Self { camera: light.camera, shift, turn, is_last, unused_a: 0, unused_b: 0, unused_c: 0 }
+        Self { camera: light.camera, shift, turn, is_last, max_weight: 0.0, max_gloss: 0.0, unused: 0 }
     }
 }
 
@@ -147,6 +147,26 @@ pub fn temporal_pixel(camera: &Camera, position: Vec3) -> [i32; 2] {
     if is_inside { [at.x as i32, at.y as i32] } else { [-1; 2] }
 }
 
+/// Position at which another frame shows the surface of a slot; `None`: there is no light on it.
+pub(crate) fn temporal_position(own: &TraceAmbient, found: &SkylightSlot, eye: Vec3) -> Option<Vec3> {
+    if found.slack <= 0.0 {
+        return None;
+    }
+    if found.roughness > 0.0 {
+        return Some(found.position);
+    }
+    // A mirror's position is that of what it shows: the mirror is where its own base is.
+    let base = skylight_slot(own, 0, eye);
+    (base.slack > 0.0).then_some(base.position)
+}
+
+/// A slot of a pixel of the frame before, with the position that it has in this one.
+pub(crate) fn temporal_slot(pixel: &TraceAmbient, slot: usize, eye: Vec3, shift: Vec3) -> SkylightSlot {
+    let mut found = skylight_slot(pixel, slot, eye);
+    found.position -= shift;
+    found
+}
+
 impl SceneView<'_> {
     /// The mean of a slot in the frame before, with its weight beside the frame's own: none where that frame does not show the same surface,
     /// or shows it in another light.
@@ -160,25 +180,13 @@ impl SceneView<'_> {
     ) -> Vec4 {
         let eye = self.frame.camera.eye;
         let found: SkylightSlot = skylight_slot(&own.ambient[pixel], slot, eye);
-        if found.slack <= 0.0 {
-            return Vec4::ZERO;
-        }
-        let mut position = found.position;
-        if found.roughness <= 0.0 {
-            // A mirror's position is that of what it shows: the mirror is where its own base is.
-            let base = skylight_slot(&own.ambient[pixel], 0, eye);
-            if base.slack <= 0.0 {
-                return Vec4::ZERO;
-            }
-            position = base.position;
-        }
+        let Some(position) = temporal_position(&own.ambient[pixel], &found, eye) else { return Vec4::ZERO };
         let [column, row] = temporal_pixel(&at.camera, position + at.shift);
         if column < 0 {
             return Vec4::ZERO;
         }
         let there = row as usize * at.camera.width as usize + column as usize;
-        let mut other = skylight_slot(&before.ambient[there], slot, eye);
-        other.position -= at.shift;
+        let other = temporal_slot(&before.ambient[there], slot, eye, at.shift);
         let mean = before.means[there][slot];
         let same = skylight_same(&found, &other, self.frame.wetness > 0);
         let weight = same * skylight_alike(own.means[pixel][slot], mean);

@@ -15,6 +15,9 @@ use downpour::wind::{Turbulence, Wind, WindPrimitive, WindTornado};
 use downpour::{Device, Renderer, RendererOptions, Source};
 use glam::Vec3;
 
+/// Frames over which light goes on before a camera that walks.
+const RUNNING_FRAMES: u32 = 16;
+
 /// Frames of rays that refine a plate.
 const KEPT_FRAMES: u32 = 4;
 
@@ -48,8 +51,13 @@ fn walking(gpu: &Gpu, weather: &str, size: [u32; 2], ray_spacing: u32) -> Render
     let Source { mut weather, loaded, .. } = source(weather);
     weather.size = size;
     weather.camera.path = source("walk").weather.camera.path;
-    let options =
-        RendererOptions { samples: 1, kept_frames: KEPT_FRAMES, ray_spacing, ..RendererOptions::default() };
+    let options = RendererOptions {
+        samples: 1,
+        kept_frames: KEPT_FRAMES,
+        running_frames: RUNNING_FRAMES,
+        ray_spacing,
+        ..RendererOptions::default()
+    };
     Renderer::new(weather, loaded, options, Device::gpu(gpu.clone(), false)).expect("a renderer")
 }
 

@@ -74,6 +74,9 @@ pub struct RendererOptions {
     /// frame; then it stays, and a frame costs its rain alone. 0: each frame has a picture of its own, and does not depend on those
     /// before it.
     pub kept_frames: u32,
+    /// Number of frames over which the light of sky and surfaces of plates that may stay goes on as a running mean while the eye or the scene
+    /// moves; 1: each has its own. Where no plate is kept it is not used.
+    pub running_frames: u32,
     /// Frames of a clip over which the light of sky and surfaces is averaged; `None`: each frame has its own. A plate that is kept has its
     /// mean over frames without it.
     pub clip_light: Option<ClipLight>,
@@ -102,6 +105,7 @@ impl Default for RendererOptions {
             truth: false,
             first_s: 0.0,
             kept_frames: 0,
+            running_frames: 1,
             clip_light: None,
         }
     }

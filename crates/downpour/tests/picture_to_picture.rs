@@ -76,7 +76,7 @@ impl Shown {
         let exposure = Exposure { shutter_s: 1.0 / 60.0, time_s: self.time_s, ..Exposure::default() };
         let rain = RainOptions { medium, exposure, capture_size: 64, ..RainOptions::default() };
         let options = PictureOptions { size, grid: 1, seed: self.seed, rain, ..PictureOptions::default() };
-        let of = PictureUse { plate: PlateUse { kept_frames, light: None }, tone: None };
+        let of = PictureUse { plate: PlateUse { kept_frames, ..PlateUse::default() }, tone: None };
         let drops = PictureDrops::Listed(&visible.drops);
         let drawn = renderer.draw_for(of, &self.scene, &self.viewpoint, drops, &self.masks, &options);
         drawn.unwrap().read().unwrap()

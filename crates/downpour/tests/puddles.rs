@@ -65,7 +65,13 @@ fn folder() -> tempfile::TempDir {
 
 fn opened(folder: &tempfile::TempDir, device: Device, kept_frames: u32) -> Renderer {
     let source = Source::read(&folder.path().join("a.toml"), &[], &mut Budget::default()).unwrap();
-    let options = RendererOptions { samples: 1, sky_rays: 1, kept_frames, ..RendererOptions::default() };
+    let options = RendererOptions {
+        samples: 1,
+        sky_rays: 1,
+        kept_frames,
+        running_frames: 8,
+        ..RendererOptions::default()
+    };
     Renderer::new(source.weather, source.loaded, options, device).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -150,6 +156,8 @@ fn a_plate_is_not_kept_over_water_that_moves() {
     assert!(made[0] > 0 && made[2..] == [0; 3], "{made:?}");
     let captured = |passes: &[(&str, f64)]| passes.iter().any(|(name, _)| *name == "capture");
     assert!(captured(&frames[0].picture.passes) && !captured(&frames[3].picture.passes));
+    // The light goes on from the last plate.
+    assert!(frames[3].picture.passes.iter().any(|(name, _)| *name == "temporal filter"));
 }
 
 /// Drops that go step by step make rings as those in closed form do: in a uniform wind the same rings.

@@ -1,5 +1,5 @@
-//! `wgsl/render/{data,texture,sky,surface,scene,capture,trace,skylight,temporal}.wgsl`: a scene of triangles under a sky, traced by rays. Twins:
-//! `downpour_trace::{texture, sky, surface, scene, capture, trace, skylight, temporal}`. The rays of the camera are in
+//! `wgsl/render/{data,texture,sky,surface,scene,capture,trace,skylight,temporal,running_light}.wgsl`: a scene of triangles under a sky, traced by rays. Twins:
+//! `downpour_trace::{texture, sky, surface, scene, capture, trace, skylight, temporal, running_light}`. The rays of the camera are in
 //! [`path`](super::path).
 
 use super::brdf::BRDF;
@@ -30,11 +30,18 @@ pub const MODULES: &[&Module] = &[
     &TRACE,
     &SKYLIGHT,
     &TEMPORAL,
+    &RUNNING_LIGHT,
 ];
 
 /// Every kernel of this file.
-pub const KERNELS: &[&Kernel] =
-    &[&TRACE_KERNEL, &TRACE_SAMPLE_KERNEL, &TRACE_SEEN_KERNEL, &SKYLIGHT_KERNEL, &TEMPORAL_KERNEL];
+pub const KERNELS: &[&Kernel] = &[
+    &TRACE_KERNEL,
+    &TRACE_SAMPLE_KERNEL,
+    &TRACE_SEEN_KERNEL,
+    &SKYLIGHT_KERNEL,
+    &TEMPORAL_KERNEL,
+    &RUNNING_LIGHT_KERNEL,
+];
 
 shared_constants! {
     /// Numbers of the scene's tables and rays.
@@ -181,6 +188,12 @@ shared_constants! {
         SKYLIGHT_LOOSE: f32 = 0.001;
         /// Roughness of a lobe within which that counts most.
         SKYLIGHT_LOOSE_ROUGHNESS: f32 = 0.45;
+        /// Part of the width of a lobe through which what a gloss mirrors may turn while frames are averaged.
+        RUNNING_LOBE: f32 = 0.5;
+        /// Frames before a frame that tell with it whether light has changed.
+        RUNNING_RECENT: f32 = 4.0;
+        /// Factor of the variance of a frame alone, which is not known well.
+        RUNNING_DOUBT: f32 = 3.0;
         /// Invocations along an edge of a workgroup.
         SPACING_GROUP: u32 = 8;
         /// Value of `suns_out` of a capture that leaves out all that shines by itself.
@@ -314,3 +327,14 @@ pub static TEMPORAL: Module = Module {
 /// One invocation per pixel.
 pub static TEMPORAL_KERNEL: Kernel =
     Kernel { entry: "main_temporal", module: &TEMPORAL, workgroup: [8, 8, 1] };
+
+/// That light in live frames. Twin: `downpour_trace::running_light`.
+pub static RUNNING_LIGHT: Module = Module {
+    path: "render/running_light.wgsl",
+    wgsl: include_str!("../../wgsl/render/running_light.wgsl"),
+    uses: &[&TEMPORAL, &SKYLIGHT, &TRACE, &CAMERA],
+};
+
+/// One invocation per pixel.
+pub static RUNNING_LIGHT_KERNEL: Kernel =
+    Kernel { entry: "main_running_light", module: &RUNNING_LIGHT, workgroup: [8, 8, 1] };

@@ -11,9 +11,11 @@ struct TemporalFrame {
     turn: u32,
     // 1: no frame comes after it.
     is_last: u32,
-    unused_a: u32,
-    unused_b: u32,
-    unused_c: u32,
+    // Greatest number of frames of a running mean (running_light.wgsl) that count beside this one; 0: there is none.
+    max_weight: f32,
+    // The same of what a gloss mirrors.
+    max_gloss: f32,
+    unused: u32,
 }
 
 // Of that frame: what its pixels have found, and the means over neighbors of it. This frame's are in skylight_ambient and skylight_before.
@@ -36,10 +38,8 @@ fn temporal_pixel(camera: RenderCamera, position: vec3f) -> vec2i {
     return vec2i(-1);
 }
 
-// The mean of a slot in the frame before, with its weight beside this frame's mean: none where that frame does not show the same surface, or
-// shows it in another light.
-fn temporal_before(pixel: u32, slot: u32) -> vec4f {
-    let own = skylight_slot(pixel, slot);
+// Position at which another frame shows the surface of a slot, and 1; 0: there is no light on it.
+fn temporal_position(pixel: u32, own: SkylightSlot) -> vec4f {
     if own.slack <= 0.0 {
         return vec4f(0.0);
     }
@@ -52,17 +52,34 @@ fn temporal_before(pixel: u32, slot: u32) -> vec4f {
         }
         position = base.position;
     }
-    let at = temporal_pixel(temporal_frame.camera, position + temporal_frame.shift);
+    return vec4f(position, 1.0);
+}
+
+// A slot of a pixel of the frame before, with the position that it has in this one.
+fn temporal_slot(pixel: u32, slot: u32) -> SkylightSlot {
+    var packed = temporal_ambient[pixel].base;
+    if slot > 0u {
+        packed = temporal_ambient[pixel].mirror;
+    }
+    var found = skylight_unpack(packed);
+    found.position -= temporal_frame.shift;
+    return found;
+}
+
+// The mean of a slot in the frame before, with its weight beside this frame's mean: none where that frame does not show the same surface, or
+// shows it in another light.
+fn temporal_before(pixel: u32, slot: u32) -> vec4f {
+    let own = skylight_slot(pixel, slot);
+    let sought = temporal_position(pixel, own);
+    if sought.w <= 0.0 {
+        return vec4f(0.0);
+    }
+    let at = temporal_pixel(temporal_frame.camera, sought.xyz + temporal_frame.shift);
     if at.x < 0 {
         return vec4f(0.0);
     }
     let there = u32(at.y) * temporal_frame.camera.width + u32(at.x);
-    var packed = temporal_ambient[there].base;
-    if slot > 0u {
-        packed = temporal_ambient[there].mirror;
-    }
-    var other = skylight_unpack(packed);
-    other.position -= temporal_frame.shift;
+    let other = temporal_slot(there, slot);
     let mean = temporal_means[2u * there + slot];
     let weight = skylight_same(own, other) * skylight_alike(skylight_before[2u * pixel + slot], mean);
     return vec4f(mean.xyz * weight, weight);

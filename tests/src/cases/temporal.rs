@@ -18,10 +18,10 @@ use crate::words::IntoWords as _;
 use crate::{FunctionCase, KernelCase, Tol};
 
 /// No multiple of a workgroup.
-const SIZE: [u32; 2] = [93, 62];
+pub(super) const SIZE: [u32; 2] = [93, 62];
 
 /// A frame of an eye that walks and turns past a scene.
-fn frame_of(scene: &SceneData, number: u32) -> RenderFrame {
+pub(super) fn frame_of(scene: &SceneData, number: u32) -> RenderFrame {
     let way = number as f32;
     let eye = Vec3::new(0.6 + 0.1 * way, 1.4, 3.0 - 0.15 * way);
     let view =
@@ -30,7 +30,7 @@ fn frame_of(scene: &SceneData, number: u32) -> RenderFrame {
 }
 
 /// The light of a frame, with positions relative to another origin.
-fn light_of(scene: &SceneData, number: u32, origin: Vec3) -> FrameLight<PixelLight> {
+pub(super) fn light_of(scene: &SceneData, number: u32, origin: Vec3) -> FrameLight<PixelLight> {
     let frame = frame_of(scene, number);
     let key = format!("light of frame {number} {}", digest(scene));
     let found = kept(&key, || SceneView { data: scene, frame: &frame }.picture_and_light().1);
@@ -42,6 +42,15 @@ fn light_of(scene: &SceneData, number: u32, origin: Vec3) -> FrameLight<PixelLig
     }
     let camera = Camera { eye: frame.camera.eye - origin, ..frame.camera };
     FrameLight { time_s: f64::from(number), origin: origin.as_dvec3(), camera, held }
+}
+
+/// Brings the light of a frame to a device.
+pub(super) fn upload(gpu: &Gpu, light: &PixelLight) -> Result<LightOnGpu, GpuError> {
+    let means: Vec<[[f32; 4]; 2]> = light.means.iter().map(|slots| slots.map(|m| m.to_array())).collect();
+    Ok(LightOnGpu {
+        ambient: gpu.storage_buffer("light", &light.ambient)?,
+        means: gpu.storage_buffer("means", &means)?,
+    })
 }
 
 /// A camera that looks somewhere, as words.
@@ -73,19 +82,12 @@ fn temporal_run(gpu: &Gpu) -> Result<Run, GpuError> {
     // Most pixels find their surface in those frames.
     let changed = cpu.iter().filter(|change| **change != Vec3::ZERO).count();
     assert!(2 * changed > cpu.len(), "{changed} pixels of {}", cpu.len());
-    let upload = |light: &PixelLight| -> Result<LightOnGpu, GpuError> {
-        let means: Vec<[[f32; 4]; 2]> = light.means.iter().map(|slots| slots.map(|m| m.to_array())).collect();
-        Ok(LightOnGpu {
-            ambient: gpu.storage_buffer("light", &light.ambient)?,
-            means: gpu.storage_buffer("means", &means)?,
-        })
-    };
     let uploaded: Vec<LightOnGpu> =
-        before.iter().map(|(_, light)| upload(light)).collect::<Result<_, _>>()?;
+        before.iter().map(|(_, light)| upload(gpu, light)).collect::<Result<_, _>>()?;
     let pairs: Vec<_> = before.iter().zip(&uploaded).map(|((at, _), light)| (*at, light)).collect();
     let picture = gpu.storage_buffer("picture", &vec![[0.0_f32; 4]; (SIZE[0] * SIZE[1]) as usize])?;
     let pipeline = TemporalPipeline::new(gpu)?;
-    let pass = pipeline.prepare(gpu, &frame, &upload(own)?, &pairs, &picture)?;
+    let pass = pipeline.prepare(gpu, &frame, &upload(gpu, own)?, &pairs, &picture)?;
     for dispatch in pass.dispatches() {
         gpu.submit(&[dispatch])?;
     }

@@ -183,6 +183,7 @@ impl RenderArguments {
         let clip_light = self.fps.map(|frames_per_s| ClipLight { frames: self.light_frames, frames_per_s });
         let options = RendererOptions {
             kept_frames: 0,
+            running_frames: 1,
             samples: self.samples,
             sky_rays: self.sky_rays(),
             ray_spacing: self.ray_spacing,

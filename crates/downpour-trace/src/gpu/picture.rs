@@ -26,12 +26,14 @@ use downpour_render::rain::{DropMasks, Rain};
 use downpour_render::tone::Tone;
 
 use super::falling::{FallingPass, FoundDrops, FoundReadback, PictureDrops};
+use super::running_light::{RUNNING_MEANS, RunningLightPipeline, RunningOnGpu};
 use super::scene::{SceneOnGpu, ScenePass, ScenePipeline};
 use super::temporal::{LightOnGpu, TemporalPipeline};
 use crate::data::{RenderFrame, SceneData};
 use crate::kept::{KeptPlate, PlateUse, seedless};
 use crate::kept_environment::KeptEnvironment;
 use crate::picture::picture_frame;
+use crate::running_light::{RunningFrame, RunningLight};
 use crate::scene::SceneView;
 use crate::temporal::{LightHistory, LightWindow};
 
@@ -70,13 +72,22 @@ impl From<GpuSimError> for GpuPictureError {
 }
 
 /// Labels of the buffers that a picture keeps.
-const GIVEN_AWAY: [&str; 8] =
-    ["picture", "rain", "environment map", "glow", "display picture", TICKS, FRAME_LIGHT[0], FRAME_LIGHT[1]];
+const GIVEN_AWAY: [&str; 9] = [
+    "picture",
+    "rain",
+    "environment map",
+    "glow",
+    "display picture",
+    TICKS,
+    FRAME_LIGHT[0],
+    FRAME_LIGHT[1],
+    RUNNING_MEANS,
+];
 
 /// That of the list among them.
 const DISTANCES: &str = "distances of drops";
 
-/// Labels of the buffers with the light of a frame of a clip.
+/// Labels of the buffers with the light of a frame that later ones ask for.
 const FRAME_LIGHT: [&str; 2] = ["light of a frame", "means of light of a frame"];
 
 /// Time of the rays of a scene, ms, up to which a frame is submitted as a whole.
@@ -94,6 +105,7 @@ pub struct PictureRenderer {
     glow: GlowPipeline,
     refine: RefinePipeline,
     temporal: TemporalPipeline,
+    running_light: RunningLightPipeline,
     tone: TonePipeline,
     fields: FieldPipeline,
     pool: Arc<BufferPool>,
@@ -117,6 +129,8 @@ pub struct PictureRenderer {
     light: Arc<Mutex<Option<(RenderFrame, KeptLight)>>>,
     /// Light of sky and surfaces in the last frames of a clip.
     history: Arc<Mutex<LightHistory<LightOnGpu>>>,
+    /// Running mean of light that the last picture has left.
+    running: Arc<Mutex<Option<RunningLight<RunningOnGpu>>>>,
 }
 
 /// A buffer that stays from picture to picture.
@@ -163,6 +177,7 @@ impl PictureRenderer {
             glow: GlowPipeline::new(gpu)?,
             refine: RefinePipeline::new(gpu)?,
             temporal: TemporalPipeline::new(gpu)?,
+            running_light: RunningLightPipeline::new(gpu)?,
             tone: TonePipeline::new(gpu)?,
             fields: FieldPipeline::new(gpu)?,
             // A picture may be read after the next one is begun.
@@ -180,6 +195,7 @@ impl PictureRenderer {
             environment: Arc::default(),
             light: Arc::default(),
             history: Arc::default(),
+            running: Arc::default(),
         })
     }
 
@@ -291,9 +307,20 @@ impl PictureRenderer {
         let captured = plate.finest();
         let stands_still = next.is_none() && captured.is_empty();
         let mut is_captured = false;
+        let mut kept_running = self.running.lock().unwrap_or_else(PoisonError::into_inner);
+        let count = next.as_ref().map(|(_, count)| *count);
+        let running = RunningLight::follow(&mut kept_running, of.plate.running(), scene, count);
         if let Some((frame, count)) = next {
             let window = of.plate.window();
-            let labels = if window.is_some() { FRAME_LIGHT } else { ["light of the sky", "means of light"] };
+            let labels = match (&window, &running) {
+                (Some(_), _) => FRAME_LIGHT,
+                (None, Some(_)) => [FRAME_LIGHT[0], "means of light"],
+                (None, None) => ["light of the sky", "means of light"],
+            };
+            let frame = match kept_running.as_ref().filter(|_| running.is_some()) {
+                Some(before) => before.drawn_anew(&frame),
+                None => frame,
+            };
             let traced = self.scene.prepare_paced(pool, &uploaded.0, &frame, pace, labels)?;
             let mut batches: Vec<Vec<_>> = traced.rays().into_iter().map(|band| vec![band]).collect();
             // Few texels with long ways keep a large device idle: it traces the picture meanwhile.
@@ -305,6 +332,8 @@ impl PictureRenderer {
             passes.run_each("skylight", &traced.filters())?;
             if let Some(window) = &window {
                 self.average_light(&mut passes, window, &frame, &traced)?;
+            } else if let Some(running) = &running {
+                self.go_on(&mut passes, running, (scene, &frame), &traced, &mut kept_running)?;
             }
             if let Some(mean) = &clean {
                 let more = self.refine.prepare(pool, camera.size(), count, traced.picture(), mean)?;
@@ -485,6 +514,29 @@ impl PictureRenderer {
         drop(before);
         drop(history);
         self.keep_light(window, frame, traced.light());
+        Ok(())
+    }
+
+    /// Makes the light of a picture the running mean of that of the frames before it and its own, and keeps it for those after it.
+    fn go_on(
+        &self,
+        passes: &mut FramePasses,
+        of: &RunningFrame,
+        (scene, frame): (&SceneData, &RenderFrame),
+        traced: &ScenePass<'_>,
+        kept: &mut Option<RunningLight<RunningOnGpu>>,
+    ) -> Result<(), GpuError> {
+        let before = kept.take();
+        let (light, picture) = (traced.light(), traced.picture());
+        let last = before.as_ref().map(|before| (before.before(of), &before.held));
+        let pass = self.running_light.prepare(&*self.pool, frame, light, last, picture)?;
+        passes.run("temporal filter", &[pass.dispatch()])?;
+        let held = RunningOnGpu { ambient: light.ambient.clone(), means: pass.means().clone() };
+        *kept = Some(RunningLight::after(before.as_ref(), of, scene, frame, held));
+        if let Some(RunningOnGpu { ambient, means }) = before.map(|before| before.held) {
+            self.pool.give_back(FRAME_LIGHT[0], ambient);
+            self.pool.give_back(RUNNING_MEANS, means);
+        }
         Ok(())
     }
 

@@ -21,6 +21,10 @@ pub(super) const KEPT_FRAMES: u32 = 4;
 /// Pixels between those whose rays look for light while the camera moves: rays are most of a frame then.
 const RAY_SPACING: u32 = 2;
 
+/// Pictures over which the light of sky and surfaces goes on while the camera or the scene moves: a quarter of a second of a fluid
+/// window.
+const RUNNING_FRAMES: u32 = 16;
+
 /// A renderer with the weather that it has.
 #[derive(Debug)]
 pub struct Machine {
@@ -259,6 +263,7 @@ impl Machine {
             samples: request.samples,
             first_s: request.time_s,
             kept_frames: KEPT_FRAMES,
+            running_frames: RUNNING_FRAMES,
             ray_spacing: RAY_SPACING,
             ..RendererOptions::default()
         };

@@ -5,6 +5,7 @@ use downpour_render::RenderError;
 use downpour_render::rain::RainMedium;
 use downpour_trace::frame_scene::FrameScene;
 use downpour_trace::kept::PlateUse;
+use downpour_trace::running_light::RunningFrame;
 use downpour_trace::temporal::{LightWindow, MAX_LIGHT_FRAMES};
 
 use super::{Progress, Renderer, RendererError};
@@ -68,7 +69,13 @@ impl Renderer {
             origin: frame_scene.origin,
             before_s: light.before(self.options.first_s, time_s),
         };
-        PlateUse { kept_frames: self.options.kept_frames, light: self.clip_light().map(window) }
+        let running =
+            RunningFrame { time_s, origin: frame_scene.origin, frames: self.options.running_frames };
+        PlateUse {
+            kept_frames: self.options.kept_frames,
+            light: self.clip_light().map(window),
+            running: Some(running),
+        }
     }
 
     /// Frames over which light is averaged, if there are several. The light of a plate that is refined has its mean over frames there.
