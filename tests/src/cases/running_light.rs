@@ -3,12 +3,14 @@
 use downpour_gpu::{Gpu, GpuError};
 use downpour_math::rng::rng_unit;
 use downpour_shaders::render::scene::{RUNNING_LIGHT, RUNNING_LIGHT_KERNEL};
+use downpour_trace::data::RenderFrame;
 use downpour_trace::gpu::{RunningLightPipeline, RunningOnGpu};
 use downpour_trace::running_light::{
     PixelRunning, RunningFrame, RunningLight, RunningMean, no_frame_before, running_light_kept,
     running_light_next, running_light_steady,
 };
 use downpour_trace::scene::SceneView;
+use downpour_trace::temporal::TemporalFrame;
 use glam::{Vec3, Vec4};
 
 use super::scene::shining_scene;
@@ -54,14 +56,15 @@ fn running_run(gpu: &Gpu) -> Result<Run, GpuError> {
     let mut before: Option<RunningLight<PixelRunning>> = None;
     for number in 0..4 {
         let light = light_of(&scene, number, origin(number));
-        let of = RunningFrame { time_s: light.time_s, origin: light.origin, frames: 3 };
+        let of = RunningFrame { time_s: light.time_s, origin: light.origin, frames: 9 };
         let frame = frame_of(&scene, number);
-        let in_frame = downpour_trace::data::RenderFrame { camera: light.camera, ..frame };
+        let in_frame = RenderFrame { camera: light.camera, ..frame };
         let own = &light.held;
         let view = SceneView { data: &scene, frame: &in_frame };
         let empty = PixelRunning::default();
         let (at, last) = match &before {
-            Some(before) => (before.before(&of), &before.held),
+            // A gloss is averaged over fewer frames, and over those within its lobe.
+            Some(before) => (TemporalFrame { max_gloss: 5.0, ..before.before(&of) }, &before.held),
             None => (no_frame_before(&in_frame), &empty),
         };
         let (means, change) = view.running_light(own, last, &at);
@@ -84,6 +87,8 @@ fn running_run(gpu: &Gpu) -> Result<Run, GpuError> {
             assert!(3 * gone_on > means.len(), "{gone_on} pixels of {}", means.len());
             return Ok(Run::of_pixels(SIZE[0], &of_cpu, &of_gpu));
         }
+        let longer = |mean: RunningMean| RunningMean { weight: 3.0 * mean.weight, ..mean };
+        let means = means.into_iter().map(|slots| slots.map(longer)).collect();
         let held = PixelRunning { ambient: own.ambient.clone(), means };
         before = Some(RunningLight::after(before.as_ref(), &of, &scene, &in_frame, held));
     }
