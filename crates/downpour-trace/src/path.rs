@@ -34,7 +34,7 @@ use downpour_shaders::render::path::{
     PATH_PLAIN_GLOSS, PATH_SAME_FACET, PATH_SAME_PLANE, PATH_SECONDARY_ROUGHNESS,
 };
 use downpour_shaders::render::puddle_water::{
-    PUDDLE_WATER_DOWN, PUDDLE_WATER_INDEX, PUDDLE_WATER_MATERIAL, PUDDLE_WATER_RAYS, PUDDLE_WATER_RIPPLED,
+    PUDDLE_WATER_DOWN, PUDDLE_WATER_INDEX, PUDDLE_WATER_MATERIAL, PUDDLE_WATER_RIPPLED,
 };
 use downpour_shaders::render::scene::{
     SCENE_ALL_OUT, SCENE_FAR, SCENE_LAMP_GLASS, SCENE_LAYERS, SCENE_NONE, SCENE_PICTURE, SCENE_SEEN_AREA,
@@ -55,6 +55,7 @@ use crate::translucent::{
 };
 use crate::wet::{wet_relief, wet_surface};
 pub use downpour_render::path_lattice::{path_lattice_numbers, path_lattice_words};
+pub use draw::path_water_rays;
 use draw::{path_onward, path_replaced, path_water_fraction, path_water_ray};
 pub(crate) use plan::path_max;
 use plan::{
@@ -367,7 +368,7 @@ impl SceneView<'_> {
             let mut plan = PathPlan::NONE;
             if let (Some(_), Some(water), false) = (met, &water, unlit) {
                 let rippled = water.ripple.z > PUDDLE_WATER_RIPPLED;
-                let mirrors = frame.sky_rays.max(if rippled { PUDDLE_WATER_RAYS } else { 1 });
+                let mirrors = path_water_rays(frame.sky_rays, frame.ray_spacing, rippled);
                 let (drawn, replaced) = (rippled && free, !rippled && free);
                 plan = PathPlan {
                     mirrors,

@@ -225,6 +225,12 @@ fn path_water_surface(start: vec3f, along: vec3f, distance: f32, ripple: vec3f) 
     return Surface(position, 1.0, normal, roughness, up, 1.0, none, 0u, vec3f(PUDDLE_WATER_NORMAL), 0.0, none, 0.0, 0.0, 0.0, 0.0, none);
 }
 
+// Number of rays that water mirrors, where so many of a pixel look for light in one of `spacing` times `spacing` pixels: of ripples several,
+// or as many fewer as pixels look for light less often.
+fn path_water_rays(rays: u32, spacing: u32, rippled: bool) -> u32 {
+    return max(rays, select(1u, max(PUDDLE_WATER_RAYS / spacing, 1u), rippled));
+}
+
 // A ray that water mirrors: drawn from its ripples. Its weight is Fresnel's.
 fn path_water_ray(ripple: vec3f, roughness: f32, view: vec3f, cone: f32, a: f32, b: f32) -> ScatterRay {
     let normal = puddle_water_normal(ripple, a, b);
@@ -704,7 +710,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     let free = path.mirror.slack == 0.0;
                     if SCENE_WET && of_water && !unlit {
                         let rippled = ripple.z > PUDDLE_WATER_RIPPLED;
-                        meeting.plan.mirrors = max(render_frame.sky_rays, select(1u, PUDDLE_WATER_RAYS, rippled));
+                        meeting.plan.mirrors = path_water_rays(render_frame.sky_rays, render_frame.ray_spacing, rippled);
                         meeting.plan.gloss = vec3f(1.0);
                         meeting.plan.fraction = 1.0;
                         meeting.plan.drawn = rippled && free;

@@ -6,7 +6,7 @@ use downpour_render::camera::Viewpoint;
 use downpour_render::light::LightSource;
 use downpour_render::spacing::spacing_first;
 use downpour_shaders::render::brdf::BRDF;
-use downpour_shaders::render::path::PATH_LATTICE;
+use downpour_shaders::render::path::{PATH, PATH_LATTICE};
 use downpour_shaders::render::scatter::SCATTER;
 use downpour_shaders::render::scene::{
     EMITTER, SCENE, SCENE_BLENDED, SCENE_DOUBLE_SIDED, SCENE_MASKED, SCENE_UNLIT, SKYLIGHT, SKYLIGHT_KERNEL,
@@ -21,7 +21,7 @@ use downpour_trace::data::{RenderFrame, SceneData};
 use downpour_trace::emitter::{emitter_color, emitter_weight};
 use downpour_trace::gpu::{SampleDispatches, ScenePipeline};
 use downpour_trace::material::{MaterialLook, TextureUse};
-use downpour_trace::path::path_lattice_numbers;
+use downpour_trace::path::{path_lattice_numbers, path_water_rays};
 use downpour_trace::scatter::{
     scatter_above, scatter_alpha, scatter_chance, scatter_gloss, scatter_hemisphere, scatter_tangent,
 };
@@ -302,6 +302,13 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &[Uniform(0.9, 1.0), Uniform(0.3, 1.0)],
             Tol::absolute(1.0e-4, "a difference of cosines near 1, over the fourth power of 0.3"),
             |a| skylight_lobe(a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "path_water_rays",
+            &PATH,
+            &[Below(8), Made(|r| vec![1 + r[0] % 4]), Below(2)],
+            Tol::exact("whole numbers"),
+            |a| path_water_rays(a.u32(), a.u32(), a.u32() != 0).words(),
         ),
         FunctionCase::new("skylight_film", &SKYLIGHT, &[fraction, fraction], FORMULA, |a| {
             skylight_film(a.f32(), a.f32()).words()

@@ -3,7 +3,7 @@
 use downpour_drop::optics::optics_fresnel;
 use downpour_shaders::render::path::{PATH_CANDIDATES, PATH_FLOOR, PATH_WATER_FACETS};
 use downpour_shaders::render::puddle_water::{
-    PUDDLE_WATER_CONE, PUDDLE_WATER_GRAZING, PUDDLE_WATER_INDEX, PUDDLE_WATER_RIPPLED,
+    PUDDLE_WATER_CONE, PUDDLE_WATER_GRAZING, PUDDLE_WATER_INDEX, PUDDLE_WATER_RAYS, PUDDLE_WATER_RIPPLED,
 };
 use downpour_shaders::render::scatter::SCATTER_DISK;
 use glam::{Vec2, Vec3};
@@ -13,6 +13,13 @@ use crate::scatter::{ScatterRay, scatter_hemisphere};
 use crate::scene::SceneView;
 use crate::scene::water::{puddle_water_mirrored, puddle_water_normal};
 use crate::surface::Surface;
+
+/// Number of rays that water mirrors, where so many of a pixel look for light in one of `spacing` times `spacing` pixels: of ripples several, or
+/// as many fewer as pixels look for light less often.
+#[must_use]
+pub fn path_water_rays(rays: u32, spacing: u32, rippled: bool) -> u32 {
+    rays.max(if rippled { (PUDDLE_WATER_RAYS / spacing).max(1) } else { 1 })
+}
 
 /// A ray that water mirrors: drawn from its ripples. Its weight is Fresnel's.
 pub(super) fn path_water_ray(
