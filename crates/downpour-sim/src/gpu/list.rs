@@ -20,12 +20,21 @@ pub struct DropListOnGpu {
 }
 
 impl DropListOnGpu {
+    /// Label of the buffers of drops.
+    pub const DROPS: &str = "falling drops";
+
+    /// Label of the buffers of numbers of drops.
+    pub const COUNTS: &str = "number of drops";
+
+    /// Bytes of the numbers of [`DropListOnGpu::counts`].
+    pub const COUNTS_BYTES: u64 = COUNTS;
+
     /// A list that begins with known drops and has room for others.
     pub(super) fn new(buffers: &impl BufferSource, known: &[EyeDrop], room: u32) -> Result<Self, GpuError> {
         let places = known.len() as u32 + room;
-        let drops = list_buffer(buffers, "falling drops", places, 0)?;
+        let drops = list_buffer(buffers, Self::DROPS, places, 0)?;
         buffers.write(&drops, bytemuck::cast_slice(known));
-        let found = buffers.buffer("number of drops", COUNTS, wgpu::BufferUsages::STORAGE)?;
+        let found = buffers.buffer(Self::COUNTS, COUNTS, wgpu::BufferUsages::STORAGE)?;
         Ok(Self { drops, found, known: known.len() as u32, room })
     }
 

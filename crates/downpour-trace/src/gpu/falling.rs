@@ -1,6 +1,8 @@
 //! Drops of a picture on a GPU: those of a list, or those that the device finds in a rain.
 
-use downpour_gpu::{BufferSource, Dispatch, Gpu, GpuError, Readback, ReadbackPool, wgpu};
+use std::ops::Range;
+
+use downpour_gpu::{BufferSource, Dispatch, Readback, wgpu};
 use downpour_render::gpu::LightingOnGpu;
 use downpour_sim::field::{EyeDrop, FallingDrop, RainField};
 use downpour_sim::gpu::{
@@ -70,12 +72,12 @@ pub struct FoundDrops {
     pub simulated: u64,
 }
 
-/// Found drops on their way from the device.
+/// The list of a picture's drops on the device, which is read with the picture.
 #[derive(Debug)]
-pub(super) struct FoundReadback {
-    read: Readback,
-    /// True if the list itself is not read.
-    is_counted: bool,
+pub(super) struct FoundList {
+    counts: wgpu::Buffer,
+    /// `None` if they are only counted.
+    drops: Option<wgpu::Buffer>,
     places: u32,
     known: u32,
     room: u32,
@@ -102,27 +104,29 @@ impl FieldDrops<'_> {
     }
 }
 
-impl FoundReadback {
-    /// Begins to read what a pass has found, or no more than how many drops it has looked at.
-    pub(super) fn begin(
-        gpu: &Gpu,
-        pool: &ReadbackPool,
-        list: &DropListOnGpu,
-        is_counted: bool,
-    ) -> Result<Self, GpuError> {
-        let buffers: [&wgpu::Buffer; 2] = [list.counts(), list.drops()];
-        let read = pool.begin(gpu, if is_counted { &buffers[..1] } else { &buffers })?;
-        Ok(Self { read, is_counted, places: list.places(), known: list.known(), room: list.room() })
+impl FoundList {
+    /// The list of a pass. `is_counted`: no more is asked than how many drops were looked at.
+    pub(super) fn new(list: &DropListOnGpu, is_counted: bool) -> Self {
+        let drops = (!is_counted).then(|| list.drops().clone());
+        let counts = list.counts().clone();
+        Self { counts, drops, places: list.places(), known: list.known(), room: list.room() }
     }
 
-    /// Waits for the number of drops that were looked at.
-    pub(super) fn simulated(mut self) -> Result<u64, GpuPictureError> {
-        self.counts()
+    /// How many there are.
+    pub(super) fn counts(&self) -> &wgpu::Buffer {
+        &self.counts
     }
 
-    fn counts(&mut self) -> Result<u64, GpuPictureError> {
-        self.read.wait()?;
-        let counts = self.read.take::<u32>(0)?;
+    /// Parts of buffers that are read of it.
+    pub(super) fn parts(&self) -> impl Iterator<Item = (&wgpu::Buffer, Range<u64>)> {
+        let places = u64::from(self.places.max(1)) * size_of::<EyeDrop>() as u64;
+        let drops = self.drops.iter().map(move |drops| (drops, 0..places));
+        std::iter::once((&self.counts, 0..DropListOnGpu::COUNTS_BYTES)).chain(drops)
+    }
+
+    /// The number of drops that were looked at, from the readback whose part `first` is its first.
+    pub(super) fn simulated(&self, read: &mut Readback, first: usize) -> Result<u64, GpuPictureError> {
+        let counts = read.take::<u32>(first)?;
         let [found, simulated, left_out] = [0, 1, 2].map(|k| counts.get(k).copied().unwrap_or_default());
         if found > self.room || left_out > 0 {
             let found = found.max(self.room).saturating_add(left_out);
@@ -131,10 +135,15 @@ impl FoundReadback {
         Ok(simulated.into())
     }
 
-    /// Waits for the drops; `distances` of all places become those of the drops that are left.
-    pub(super) fn finish(mut self, distances: &mut Vec<f32>) -> Result<FoundDrops, GpuPictureError> {
-        let simulated = self.counts()?;
-        let drops = if self.is_counted { Vec::new() } else { self.read.take::<EyeDrop>(1)? };
+    /// The drops, from the readback whose part `first` is its first; `distances` of all places become those of the drops that are left.
+    pub(super) fn finish(
+        self,
+        read: &mut Readback,
+        first: usize,
+        distances: &mut Vec<f32>,
+    ) -> Result<FoundDrops, GpuPictureError> {
+        let simulated = self.simulated(read, first)?;
+        let drops = if self.drops.is_some() { read.take::<EyeDrop>(first + 1)? } else { Vec::new() };
         let mut places: Vec<u32> = (0..self.places.min(drops.len() as u32))
             .filter(|&place| drops[place as usize].diameter > 0.0)
             .collect();

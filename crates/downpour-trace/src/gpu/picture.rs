@@ -12,7 +12,7 @@ use downpour_gpu::{
 use downpour_shaders::render::puddle_water::PUDDLE_WATER_RAYS;
 use downpour_sim::SimError;
 use downpour_sim::field::{EyeDrop, FallingDrop, RainField};
-use downpour_sim::gpu::{FieldOnGpu, FieldPipeline, GpuSimError};
+use downpour_sim::gpu::{DropListOnGpu, FieldOnGpu, FieldPipeline, GpuSimError};
 use rayon::prelude::*;
 
 use downpour_render::RenderError;
@@ -25,7 +25,7 @@ use downpour_render::picture::{DeviceUse, Picture, PictureOptions};
 use downpour_render::rain::{DropMasks, Rain};
 use downpour_render::tone::Tone;
 
-use super::falling::{FallingPass, FoundDrops, FoundReadback, PictureDrops};
+use super::falling::{FallingPass, FoundDrops, FoundList, PictureDrops};
 use super::running_light::{RUNNING_MEANS, RunningLightPipeline, RunningOnGpu};
 use super::scene::{SceneOnGpu, ScenePass, ScenePipeline};
 use super::temporal::{LightOnGpu, TemporalPipeline};
@@ -72,7 +72,7 @@ impl From<GpuSimError> for GpuPictureError {
 }
 
 /// Labels of the buffers that a picture keeps.
-const GIVEN_AWAY: [&str; 9] = [
+const GIVEN_AWAY: [&str; 10] = [
     "picture",
     "rain",
     "environment map",
@@ -82,9 +82,13 @@ const GIVEN_AWAY: [&str; 9] = [
     FRAME_LIGHT[0],
     FRAME_LIGHT[1],
     RUNNING_MEANS,
+    DropListOnGpu::COUNTS,
 ];
 
-/// That of the list among them.
+/// Those of the lists among them.
+const LISTS_GIVEN_AWAY: [&str; 2] = [DISTANCES, DropListOnGpu::DROPS];
+
+/// Label of the list of drops' distances.
 const DISTANCES: &str = "distances of drops";
 
 /// Labels of the buffers with the light of a frame that later ones ask for.
@@ -182,7 +186,7 @@ impl PictureRenderer {
             fields: FieldPipeline::new(gpu)?,
             // A picture may be read after the next one is begun.
             pool: Arc::new(
-                BufferPool::new(gpu).with_given_away(&GIVEN_AWAY).with_lists_given_away(&[DISTANCES]),
+                BufferPool::new(gpu).with_given_away(&GIVEN_AWAY).with_lists_given_away(&LISTS_GIVEN_AWAY),
             ),
             drawing: Arc::default(),
             readbacks: ReadbackPool::default(),
@@ -347,7 +351,7 @@ impl PictureRenderer {
         let (falling, count, search) = passes.host("drops to the device", || match drops {
             PictureDrops::Listed(drops) => {
                 let falling: Vec<EyeDrop> = drops.par_iter().map(|drop| EyeDrop::new(drop, eye)).collect();
-                Ok((pool.storage("falling drops", &falling)?, drops.len() as u32, None))
+                Ok((pool.storage(DropListOnGpu::DROPS, &falling)?, drops.len() as u32, None))
             }
             PictureDrops::Field(mut drops) => {
                 let search = drops.prepare(&self.fields, pool, scene, plate.lighting())?;
@@ -359,6 +363,7 @@ impl PictureRenderer {
             }
         })?;
         let frequencies = self.frequencies(&options.rain.exposure.fluids)?;
+        let drops_found = falling.clone();
         let falling = FallingOnGpu { drops: &falling, count, frequencies: &frequencies };
         let view = SceneView { data: scene, frame: &frame };
         let lights = [rain.lights(&view, masks)?, rain.streak_lights(&view, masks)?];
@@ -411,12 +416,9 @@ impl PictureRenderer {
             None => None,
         };
         let (times, ticks) = passes.end()?;
-        // The next picture may write the list.
-        let is_displayed = pixels.is_some();
-        let begin = |search: FallingPass<'_>| {
-            FoundReadback::begin(&self.gpu, &self.readbacks, search.list(), is_displayed)
-        };
-        let found = search.map(begin).transpose()?;
+        let found = search.map(|search| FoundList::new(search.list(), pixels.is_some()));
+        layers.push((DropListOnGpu::DROPS, drops_found));
+        layers.extend(found.iter().map(|found| (DropListOnGpu::COUNTS, found.counts().clone())));
         layers.push(("rain", layer.clone()));
         layers.push((DISTANCES, distances.clone()));
         layers.extend(glow.iter().map(|glow| ("glow", glow.clone())));
@@ -634,7 +636,7 @@ pub struct PictureOnGpu {
     /// Places of the list of drops.
     count: usize,
     /// The list, if the device has made it.
-    found: Option<FoundReadback>,
+    found: Option<FoundList>,
     distances: wgpu::Buffer,
     clean: wgpu::Buffer,
     /// Of the plate and of the environment map, if they stay.
@@ -661,7 +663,7 @@ pub struct PictureReadback {
     samples: f64,
     rain: Rain,
     count: usize,
-    found: Option<FoundReadback>,
+    found: Option<FoundList>,
     read: Readback,
     times: FrameTimes,
     has_ticks: bool,
@@ -690,7 +692,8 @@ impl PictureOnGpu {
         let mut buffers = vec![&self.clean, &self.layer, &self.environment];
         buffers.extend(&self.glow);
         buffers.extend(&self.ticks);
-        let read = begin_read(&self.readbacks, &self.gpu, (&self.distances, count), &buffers)?;
+        let read =
+            begin_read(&self.readbacks, &self.gpu, (&self.distances, count), &buffers, found.as_ref())?;
         let (has_ticks, has_glow) = (self.ticks.is_some(), self.glow.is_some());
         give_back(&pool, self.layers);
         Ok(PictureReadback {
@@ -717,7 +720,8 @@ impl PictureOnGpu {
         let Some(pixels) = &self.pixels else { return Ok(None) };
         let mut buffers = vec![pixels];
         buffers.extend(&self.ticks);
-        let read = begin_read(&self.readbacks, &self.gpu, (&self.distances, self.count), &buffers)?;
+        let distances = (&self.distances, self.count);
+        let read = begin_read(&self.readbacks, &self.gpu, distances, &buffers, self.found.as_ref())?;
         give_back(&self.pool, self.layers);
         Ok(Some(DisplayReadback {
             size: self.rain.frame.camera.size(),
@@ -754,7 +758,8 @@ impl PictureReadback {
         let begin = Instant::now();
         let mut distances = read.take::<f32>(0)?;
         distances.truncate(count);
-        let found = found.map(|found| found.finish(&mut distances)).transpose()?;
+        let of_list = 4 + usize::from(has_glow) + usize::from(has_ticks);
+        let found = found.map(|found| found.finish(&mut read, of_list, &mut distances)).transpose()?;
         let [clean, layer, environment] = [read.take(1)?, read.take(2)?, read.take(3)?];
         let glow = if has_glow { read.take(4)? } else { Vec::new() };
         let ticks = 4 + usize::from(has_glow);
@@ -772,17 +777,19 @@ fn listed(pass: FallingPass<'_>) -> (wgpu::Buffer, u32, Option<FallingPass<'_>>)
     (pass.list().drops().clone(), pass.list().places(), Some(pass))
 }
 
-/// Begins to read the distances of so many drops, and the whole of other buffers.
+/// Begins to read the distances of so many drops, the whole of other buffers, and the list of drops.
 fn begin_read(
     readbacks: &ReadbackPool,
     gpu: &Gpu,
     (distances, count): (&wgpu::Buffer, usize),
     others: &[&wgpu::Buffer],
+    found: Option<&FoundList>,
 ) -> Result<Readback, GpuError> {
     // Nothing is no part of a buffer.
     let of_drops = (4 * count.max(1) as u64).min(distances.size());
     let mut parts = vec![(distances, 0..of_drops)];
     parts.extend(others.iter().map(|buffer| (*buffer, 0..buffer.size())));
+    parts.extend(found.into_iter().flat_map(FoundList::parts));
     readbacks.begin_parts(gpu, &parts)
 }
 
@@ -800,7 +807,7 @@ pub struct DisplayReadback {
     pace: Arc<Mutex<Option<f64>>>,
     samples: f64,
     count: usize,
-    found: Option<FoundReadback>,
+    found: Option<FoundList>,
     read: Readback,
     times: FrameTimes,
     has_ticks: bool,
@@ -837,7 +844,7 @@ impl DisplayReadback {
         let mut distances = read.take::<f32>(0)?;
         distances.truncate(count);
         let drops_simulated = match found {
-            Some(found) => found.simulated()?,
+            Some(found) => found.simulated(&mut read, 2 + usize::from(has_ticks))?,
             None => count as u64,
         };
         let pixels = read.take(1)?;
