@@ -15,6 +15,7 @@
 
 use std::sync::Arc;
 
+use downpour_bvh::BvhTriangle;
 use downpour_math::rng::rng_draw;
 use downpour_render::camera::Camera;
 use downpour_shaders::render::scene::{RUNNING_DOUBT, RUNNING_LOBE, RUNNING_RECENT, SKYLIGHT_LOBE};
@@ -24,6 +25,7 @@ use rayon::prelude::*;
 use crate::data::{RenderFrame, SceneData};
 use crate::scene::SceneView;
 use crate::skylight::{SkylightSlot, skylight_alike, skylight_packed, skylight_same, skylight_slot};
+use crate::still_part::StillPart;
 use crate::temporal::{PixelLight, TemporalFrame, temporal_position, temporal_slot};
 use crate::trace::{TraceAmbient, trace_unpack};
 
@@ -75,14 +77,48 @@ pub struct PixelRunning {
     pub means: Vec<[RunningMean; 2]>,
 }
 
+/// What frames of one scene share.
+#[derive(Clone, Debug)]
+struct Lit {
+    /// Of a scene that moves, what stands still.
+    still: Option<Arc<StillPart>>,
+    triangles: Arc<Vec<BvhTriangle>>,
+    texels: Arc<Vec<u32>>,
+    sky: Arc<Vec<[f32; 4]>>,
+}
+
+impl Lit {
+    fn of(scene: &SceneData) -> Self {
+        let SceneData { still, triangles, texels, sky, .. } = scene;
+        Self {
+            still: still.clone(),
+            triangles: Arc::clone(triangles),
+            texels: Arc::clone(texels),
+            sky: Arc::clone(sky),
+        }
+    }
+
+    /// True if a scene is of the same model under the same sky; its lamps may differ.
+    fn is_that_of(&self, scene: &SceneData) -> bool {
+        let is_same = match (&self.still, &scene.still) {
+            (Some(before), Some(now)) => Arc::ptr_eq(&before.part, &now.part),
+            (None, None) => {
+                Arc::ptr_eq(&self.triangles, &scene.triangles) && Arc::ptr_eq(&self.texels, &scene.texels)
+            }
+            _ => false,
+        };
+        is_same && (Arc::ptr_eq(&self.sky, &scene.sky) || self.sky == scene.sky)
+    }
+}
+
 /// The running mean that the last frame has left; `T` holds it: [`PixelRunning`] on the CPU.
 #[derive(Clone, Debug)]
 pub struct RunningLight<T> {
     time_s: f64,
     origin: DVec3,
     camera: Camera,
-    /// The scene, of which only what is shared is compared.
-    scene: SceneData,
+    /// The scene.
+    scene: Lit,
     /// Number of frames since it began.
     count: u32,
     /// The means.
@@ -103,7 +139,7 @@ impl<T> RunningLight<T> {
             time_s: of.time_s,
             origin: of.origin,
             camera: frame.camera,
-            scene: scene.clone(),
+            scene: Lit::of(scene),
             count: before.map_or(1, |before| before.count.saturating_add(1)),
             held,
         }
@@ -132,17 +168,7 @@ impl<T> RunningLight<T> {
     /// True if a frame of a scene may go on from it: of the same model under the same sky, not earlier and not much later.
     #[must_use]
     pub fn goes_on(&self, of: &RunningFrame, scene: &SceneData) -> bool {
-        let before = &self.scene;
-        let is_same = match (&before.still, &scene.still) {
-            (Some(before), Some(now)) => Arc::ptr_eq(&before.part, &now.part),
-            (None, None) => {
-                Arc::ptr_eq(&before.triangles, &scene.triangles) && Arc::ptr_eq(&before.texels, &scene.texels)
-            }
-            _ => false,
-        };
-        is_same
-            && (Arc::ptr_eq(&before.sky, &scene.sky) || before.sky == scene.sky)
-            && (0.0..=MAX_GAP_S).contains(&(of.time_s - self.time_s))
+        self.scene.is_that_of(scene) && (0.0..=MAX_GAP_S).contains(&(of.time_s - self.time_s))
     }
 
     /// The frame of other rays that goes on from it.
