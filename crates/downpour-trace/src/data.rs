@@ -340,6 +340,14 @@ impl RenderFrame {
         }
     }
 
+    /// The frame of other rays.
+    #[must_use]
+    pub(crate) fn with_seed(self, seed: u32) -> Self {
+        let camera = Camera { seed, ..self.camera };
+        // The pixels that look for light go with the seed.
+        Self { camera, ..self }.with_ray_spacing(self.ray_spacing)
+    }
+
     /// Those pixels.
     #[must_use]
     pub fn pixels_that_look(&self) -> RaySpacing {

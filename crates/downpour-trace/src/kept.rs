@@ -4,7 +4,6 @@
 //! Changes of the scene's light by less than an eye can tell do not count: surfaces that get wetter step by step.
 
 use downpour_math::rng::rng_draw;
-use downpour_render::camera::Camera;
 use downpour_render::refine::{refine_shift, shifted};
 
 use crate::data::{RenderFrame, SceneData};
@@ -94,12 +93,12 @@ fn refined_frame(frame: &RenderFrame, count: u32) -> RenderFrame {
     let camera = shifted(&frame.camera, refine_shift(count));
     let seed = rng_draw([frame.camera.seed, 0], count, 0, SEED_DIMENSION)[0];
     // What stands still is worth the rays of all pixels.
-    RenderFrame { camera: Camera { seed, ..camera }, ..*frame }.with_ray_spacing(1)
+    RenderFrame { camera, ..*frame }.with_ray_spacing(1).with_seed(seed)
 }
 
 /// The frame without what differs between the frames that refine a plate.
 pub(crate) fn seedless(frame: &RenderFrame) -> RenderFrame {
-    RenderFrame { camera: Camera { seed: 0, ..frame.camera }, ..*frame }.with_ray_spacing(1)
+    frame.with_ray_spacing(1).with_seed(0)
 }
 
 /// True if ripples on a device are of one step.

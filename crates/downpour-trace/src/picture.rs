@@ -122,14 +122,9 @@ pub fn render_picture_on(
     }
     let plate = kept_plate.take().filter(|plate| plate.shows(scene, &frame));
     let plate = kept_plate.insert(plate.unwrap_or_else(|| KeptPlate::new(scene, &frame, Vec::new())));
-    let next = plate.next(&frame, of.kept_frames);
-    let count = next.as_ref().map(|(_, count)| *count);
-    let running = RunningLight::follow(&mut kept.running, of.running(), scene, count);
+    let mut next = plate.next(&frame, of.kept_frames);
+    let running = RunningLight::follow(&mut kept.running, of.running(), scene, next.as_mut());
     if let Some((refined, count)) = next {
-        let refined = match kept.running.as_ref().filter(|_| running.is_some()) {
-            Some(before) => before.drawn_anew(&refined),
-            None => refined,
-        };
         let view = SceneView { data: scene, frame: &refined };
         let (mut next, light) = timed(&mut passes, "scene", || view.picture_and_light());
         if let Some(window) = of.window() {

@@ -15,6 +15,7 @@
 
 use std::sync::Arc;
 
+use bytemuck::Zeroable as _;
 use downpour_bvh::BvhTriangle;
 use downpour_math::rng::rng_draw;
 use downpour_render::camera::Camera;
@@ -24,10 +25,10 @@ use rayon::prelude::*;
 
 use crate::data::{RenderFrame, SceneData};
 use crate::scene::SceneView;
-use crate::skylight::{SkylightSlot, skylight_alike, skylight_packed, skylight_same, skylight_slot};
+use crate::skylight::{SkylightSlot, skylight_alike, skylight_factor, skylight_same, skylight_slot};
 use crate::still_part::StillPart;
 use crate::temporal::{PixelLight, TemporalFrame, temporal_position, temporal_slot};
-use crate::trace::{TraceAmbient, trace_unpack};
+use crate::trace::TraceAmbient;
 
 /// Dimension of the random numbers of the frames of a running mean.
 const SEED_DIMENSION: u32 = 4122;
@@ -62,10 +63,6 @@ pub struct RunningMean {
     pub recent: Vec3,
     /// Variance of the luminance of one frame, over the last few.
     pub variance: f32,
-}
-
-impl RunningMean {
-    const NONE: Self = Self { color: Vec3::ZERO, weight: 0.0, recent: Vec3::ZERO, variance: 0.0 };
 }
 
 /// Running means of the slots of all pixels, with what these have found in the last frame.
@@ -145,37 +142,35 @@ impl<T> RunningLight<T> {
         }
     }
 
-    /// Forgets a mean from which a picture does not go on. Returns the frame if it is taken into the mean: `count` is its number among those
-    /// that refine its plate ([`KeptPlate::next`](crate::kept::KeptPlate::next)), which have a mean of their own.
+    /// Forgets a mean from which a picture does not go on. `next` is the frame to be traced and its number among those that refine its plate
+    /// ([`KeptPlate::next`](crate::kept::KeptPlate::next)), which have a mean of their own: the first of them is taken into this one, for
+    /// which it gets other rays. Returns what it is taken in with.
     pub fn follow(
         kept: &mut Option<Self>,
         of: Option<RunningFrame>,
         scene: &SceneData,
-        count: Option<u32>,
+        next: Option<&mut (RenderFrame, u32)>,
     ) -> Option<RunningFrame> {
         let of = of?;
         *kept = kept.take().filter(|before| before.goes_on(&of, scene));
-        if count == Some(1) {
-            return Some(of);
-        }
-        // Nothing differs: it holds for those that come later.
-        if let Some(before) = kept {
-            before.time_s = of.time_s;
+        match (next, kept) {
+            (Some((frame, 1)), before) => {
+                if let Some(before) = before {
+                    let seed = rng_draw([frame.camera.seed, 0], before.count, 0, SEED_DIMENSION)[0];
+                    *frame = frame.with_seed(seed);
+                }
+                return Some(of);
+            }
+            // Nothing differs: it holds for those that come later.
+            (_, Some(before)) => before.time_s = of.time_s,
+            (_, None) => {}
         }
         None
     }
 
     /// True if a frame of a scene may go on from it: of the same model under the same sky, not earlier and not much later.
-    #[must_use]
-    pub fn goes_on(&self, of: &RunningFrame, scene: &SceneData) -> bool {
+    fn goes_on(&self, of: &RunningFrame, scene: &SceneData) -> bool {
         self.scene.is_that_of(scene) && (0.0..=MAX_GAP_S).contains(&(of.time_s - self.time_s))
-    }
-
-    /// The frame of other rays that goes on from it.
-    #[must_use]
-    pub fn drawn_anew(&self, frame: &RenderFrame) -> RenderFrame {
-        let seed = rng_draw([frame.camera.seed, 0], self.count, 0, SEED_DIMENSION)[0];
-        RenderFrame { camera: Camera { seed, ..frame.camera }, ..*frame }.with_ray_spacing(frame.ray_spacing)
     }
 
     /// The frame that left it, for one that goes on from it.
@@ -185,11 +180,9 @@ impl<T> RunningLight<T> {
         TemporalFrame {
             camera: self.camera,
             shift: (of.origin - self.origin).as_vec3(),
-            turn: 0,
-            is_last: 1,
             max_weight,
             max_gloss: if self.scene.still.is_some() { max_weight.min(MAX_MOVING_GLOSS) } else { max_weight },
-            unused: 0,
+            ..TemporalFrame::zeroed()
         }
     }
 }
@@ -197,15 +190,7 @@ impl<T> RunningLight<T> {
 /// What stands in place of the frame before the first one.
 #[must_use]
 pub fn no_frame_before(frame: &RenderFrame) -> TemporalFrame {
-    TemporalFrame {
-        camera: frame.camera,
-        shift: Vec3::ZERO,
-        turn: 0,
-        is_last: 1,
-        max_weight: 0.0,
-        max_gloss: 0.0,
-        unused: 0,
-    }
+    TemporalFrame { camera: frame.camera, ..TemporalFrame::zeroed() }
 }
 
 /// Number of frames over which what a gloss mirrors stays within its lobe, if the direction turns by a chord per frame.
@@ -255,16 +240,16 @@ impl SceneView<'_> {
         found: &SkylightSlot,
     ) -> RunningMean {
         let eye = self.frame.camera.eye;
-        let Some(sought) = temporal_position(own, found, eye) else { return RunningMean::NONE };
+        let Some(sought) = temporal_position(own, found, eye) else { return RunningMean::default() };
         let from_eye = sought + at.shift - at.camera.eye;
         if at.max_weight <= 0.0 || from_eye.dot(at.camera.forward) <= 0.0 {
-            return RunningMean::NONE;
+            return RunningMean::default();
         }
         let place = at.camera.camera_project(from_eye) - Vec2::splat(0.5);
         let size = UVec2::from(at.camera.size()).as_vec2();
         let corner = place.floor();
         let part = place - corner;
-        let (mut sum, mut counted) = (RunningMean::NONE, 0.0);
+        let (mut sum, mut counted) = (RunningMean::default(), 0.0);
         for k in 0..4 {
             let step = UVec2::new(k & 1, k >> 1).as_vec2();
             let place = corner + step;
@@ -284,7 +269,7 @@ impl SceneView<'_> {
             counted += counts;
         }
         if counted <= 0.0 {
-            return RunningMean::NONE;
+            return RunningMean::default();
         }
         let mut max = at.max_weight;
         if found.roughness > 0.0 {
@@ -313,14 +298,13 @@ impl SceneView<'_> {
             let means = [0, 1].map(|slot| {
                 let its = skylight_slot(found, slot, eye);
                 if its.slack <= 0.0 {
-                    return RunningMean::NONE;
+                    return RunningMean::default();
                 }
                 let before = self.running_light_before(found, before, at, slot, &its);
                 running_light_next(&before, own.means[pixel][slot])
             });
             let [of_base, of_mirror] = [0, 1].map(|slot| {
-                let factor = trace_unpack(skylight_packed(found, slot), eye).factor;
-                factor * (means[slot].color - own.means[pixel][slot].truncate())
+                skylight_factor(found, slot, eye) * (means[slot].color - own.means[pixel][slot].truncate())
             });
             (means, of_base + of_mirror)
         };

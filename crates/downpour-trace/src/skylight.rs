@@ -164,12 +164,17 @@ impl SceneView<'_> {
 
 /// Light that the means of a pixel's two slots add to it, as an eye sees it.
 fn light_shown(pixel: &TraceAmbient, [of_base, of_mirror]: &[Vec4; 2], eye: Vec3) -> Vec3 {
-    let [base, mirror] = [&pixel.base, &pixel.mirror].map(|slot| trace_unpack(slot, eye).factor);
-    base * of_base.truncate() + mirror * of_mirror.truncate()
+    skylight_factor(pixel, 0, eye) * of_base.truncate()
+        + skylight_factor(pixel, 1, eye) * of_mirror.truncate()
+}
+
+/// Factor of the light of a slot of a pixel.
+pub(crate) fn skylight_factor(pixel: &TraceAmbient, slot: usize, eye: Vec3) -> Vec3 {
+    trace_unpack(skylight_packed(pixel, slot), eye).factor
 }
 
 /// A slot of a surface in a pixel.
-pub(crate) fn skylight_packed(pixel: &TraceAmbient, slot: usize) -> &TraceSlot {
+fn skylight_packed(pixel: &TraceAmbient, slot: usize) -> &TraceSlot {
     if slot > 0 { &pixel.mirror } else { &pixel.base }
 }
 
@@ -266,7 +271,7 @@ impl Pixels<'_> {
                 weight += counts + few;
             }
         }
-        trace_unpack(skylight_packed(pixel, slot), camera.eye).factor * (sum / weight)
+        skylight_factor(pixel, slot, camera.eye) * (sum / weight)
     }
 
     /// The mean of means `step` pixels apart that show the same.

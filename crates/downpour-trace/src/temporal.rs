@@ -10,13 +10,14 @@
 //! A frame is averaged with frames at given times before it, not with all that have been drawn: it is the same whether the frames of a clip
 //! are rendered one after the other or it is rendered alone, for which the light of those frames is found first.
 
+use bytemuck::Zeroable as _;
 use downpour_render::camera::Camera;
 use glam::{DVec3, Vec3, Vec4};
 use rayon::prelude::*;
 
 use crate::scene::SceneView;
-use crate::skylight::{SkylightSlot, skylight_alike, skylight_packed, skylight_same, skylight_slot};
-use crate::trace::{TraceAmbient, trace_unpack};
+use crate::skylight::{SkylightSlot, skylight_alike, skylight_factor, skylight_same, skylight_slot};
+use crate::trace::TraceAmbient;
 
 /// Greatest number of frames over which light is averaged.
 pub const MAX_LIGHT_FRAMES: usize = 8;
@@ -131,7 +132,7 @@ impl TemporalFrame {
     pub fn new<T>(window: &LightWindow, light: &FrameLight<T>, turn: u32, count: u32) -> Self {
         let shift = (window.origin - light.origin).as_vec3();
         let is_last = u32::from(turn + 1 == count);
-        Self { camera: light.camera, shift, turn, is_last, max_weight: 0.0, max_gloss: 0.0, unused: 0 }
+        Self { camera: light.camera, shift, turn, is_last, ..Self::zeroed() }
     }
 }
 
@@ -204,8 +205,7 @@ impl SceneView<'_> {
                 for (at, light) in before {
                     sum += self.temporal_before(own, light, at, pixel, slot);
                 }
-                let packed = skylight_packed(&own.ambient[pixel], slot);
-                trace_unpack(packed, eye).factor * (sum.truncate() / sum.w - mean)
+                skylight_factor(&own.ambient[pixel], slot, eye) * (sum.truncate() / sum.w - mean)
             });
             slots[0] + slots[1]
         };

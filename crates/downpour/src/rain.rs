@@ -20,7 +20,7 @@ use downpour_render::rain::{
     DropMasks, Exposure, MediumGrain, MediumOptions, Rain as PictureRain, RainMedium, RainOptions,
 };
 use downpour_sim::field::{RainField, VisibleDrops};
-use downpour_sim::gpu::{FieldOnGpu, FieldPipeline, FieldSearch, HolesOnGpu, ObstaclesOnGpu};
+use downpour_sim::gpu::{DropListOnGpu, FieldOnGpu, FieldPipeline, FieldSearch, HolesOnGpu, ObstaclesOnGpu};
 use downpour_sim::impacts::SplashOptions;
 use downpour_sim::resolved::Resolved;
 use downpour_sim::shelter::Obstacles;
@@ -120,9 +120,6 @@ pub struct Rain {
 /// Frames whose numbers of drops may be on their way at once.
 const COUNTED_FRAMES: usize = 3;
 
-/// Bytes of the numbers of drops of a frame ([`DropListOnGpu::counts`](downpour_sim::gpu::DropListOnGpu::counts)).
-const COUNT_BYTES: u64 = 12;
-
 impl Rain {
     /// Creates the rain: traces the masks of its drops and compiles the pipelines, which takes some seconds. The device needs no
     /// feature and no more than WebGPU's default limits; its callbacks stay the host's.
@@ -158,7 +155,7 @@ impl Rain {
             probe,
             views: TriedViews::default(),
             frames: 0,
-            counting: ReadbackRing::new(&gpu, COUNT_BYTES, COUNTED_FRAMES)?,
+            counting: ReadbackRing::new(&gpu, DropListOnGpu::COUNTS_BYTES, COUNTED_FRAMES)?,
             counts: None,
             gpu,
             masks_air: settings.air,

@@ -104,11 +104,7 @@ fn main_running_light(@builtin(global_invocation_id) id: vec3u) {
             after = running_light_next(running_light_before(pixel, slot, own), mean);
         }
         running_after[2u * pixel + slot] = after;
-        var packed = skylight_ambient[pixel].base;
-        if slot > 0u {
-            packed = skylight_ambient[pixel].mirror;
-        }
-        change += trace_unpack(packed).factor * (after.color - mean.xyz);
+        change += skylight_factor(pixel, slot) * (after.color - mean.xyz);
     }
     skylight_picture[pixel] += vec4f(change, 0.0);
 }

@@ -65,6 +65,14 @@ fn skylight_slot(pixel: u32, slot: u32) -> SkylightSlot {
     return skylight_unpack(skylight_ambient[pixel].base);
 }
 
+// Factor of the light of a slot of a pixel.
+fn skylight_factor(pixel: u32, slot: u32) -> vec3f {
+    if slot > 0u {
+        return trace_unpack(skylight_ambient[pixel].mirror).factor;
+    }
+    return trace_unpack(skylight_ambient[pixel].base).factor;
+}
+
 // Agreement of the roughness of two glosses, 0 to 1: a film and the dry surface beside it mirror different things.
 fn skylight_film(own: f32, other: f32) -> f32 {
     let apart = abs(own - other) / max(max(own, other), 1.0e-6);
@@ -240,8 +248,8 @@ fn main_skylight(@builtin(global_invocation_id) id: vec3u) {
         skylight_means[2u * index + slot] = mean;
     }
     if step == SKYLIGHT_PASSES {
-        let of_base = trace_unpack(skylight_ambient[index].base).factor * skylight_means[2u * index].xyz;
-        let of_mirror = trace_unpack(skylight_ambient[index].mirror).factor * skylight_means[2u * index + 1u].xyz;
+        let of_base = skylight_factor(index, 0u) * skylight_means[2u * index].xyz;
+        let of_mirror = skylight_factor(index, 1u) * skylight_means[2u * index + 1u].xyz;
         skylight_picture[index] += vec4f(of_base + of_mirror, 0.0);
     }
 }

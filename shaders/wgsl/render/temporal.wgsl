@@ -100,11 +100,7 @@ fn main_temporal(@builtin(global_invocation_id) id: vec3u) {
         }
         sum += temporal_before(pixel, slot);
         if temporal_frame.is_last > 0u {
-            var packed = skylight_ambient[pixel].base;
-            if slot > 0u {
-                packed = skylight_ambient[pixel].mirror;
-            }
-            change += trace_unpack(packed).factor * (sum.xyz / sum.w - own);
+            change += skylight_factor(pixel, slot) * (sum.xyz / sum.w - own);
         } else {
             temporal_sums[2u * pixel + slot] = sum;
         }

@@ -17,7 +17,7 @@ use downpour_wind::UniformWind;
 use glam::{DVec3, Vec3};
 
 use super::GpuSimError;
-use super::list::{BoundKernel, COUNTS, DropListOnGpu, list_buffer};
+use super::list::{BoundKernel, DropListOnGpu, list_buffer};
 use crate::drift::Drift;
 use crate::field::frame::{FieldQuery, ShelterFrame};
 use crate::field::{EyeDrop, RainField, check_time};
@@ -243,7 +243,11 @@ impl FieldPipeline {
         for slice in slices {
             let SplashSearch { slice, view, query, mut frame } = slice;
             let of_slice = list_buffer(buffers, "drops of a slice", query.frame.room, 0)?;
-            let counts = buffers.buffer("number of drops of a slice", COUNTS, wgpu::BufferUsages::STORAGE)?;
+            let counts = buffers.buffer(
+                "number of drops of a slice",
+                DropListOnGpu::COUNTS_BYTES,
+                wgpu::BufferUsages::STORAGE,
+            )?;
             let from = ListOnGpu { drops: &of_slice, found: &counts };
             let time_s = slice.middle_s();
             let searched = self.search(

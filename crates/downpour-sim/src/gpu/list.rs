@@ -21,20 +21,20 @@ pub struct DropListOnGpu {
 
 impl DropListOnGpu {
     /// Label of the buffers of drops.
-    pub const DROPS: &str = "falling drops";
+    pub const DROPS_LABEL: &str = "falling drops";
 
     /// Label of the buffers of numbers of drops.
-    pub const COUNTS: &str = "number of drops";
+    pub const COUNTS_LABEL: &str = "number of drops";
 
     /// Bytes of the numbers of [`DropListOnGpu::counts`].
-    pub const COUNTS_BYTES: u64 = COUNTS;
+    pub const COUNTS_BYTES: u64 = 12;
 
     /// A list that begins with known drops and has room for others.
     pub(super) fn new(buffers: &impl BufferSource, known: &[EyeDrop], room: u32) -> Result<Self, GpuError> {
         let places = known.len() as u32 + room;
-        let drops = list_buffer(buffers, Self::DROPS, places, 0)?;
+        let drops = list_buffer(buffers, Self::DROPS_LABEL, places, 0)?;
         buffers.write(&drops, bytemuck::cast_slice(known));
-        let found = buffers.buffer(Self::COUNTS, COUNTS, wgpu::BufferUsages::STORAGE)?;
+        let found = buffers.buffer(Self::COUNTS_LABEL, Self::COUNTS_BYTES, wgpu::BufferUsages::STORAGE)?;
         Ok(Self { drops, found, known: known.len() as u32, room })
     }
 
@@ -82,9 +82,6 @@ impl DropListOnGpu {
         Ok((drops, [found[0], found[1]]))
     }
 }
-
-/// Bytes of the numbers of [`DropListOnGpu::counts`].
-pub(super) const COUNTS: u64 = 12;
 
 /// A buffer with so many places for drops, behind other contents of some bytes.
 pub(super) fn list_buffer(

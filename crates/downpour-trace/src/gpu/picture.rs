@@ -82,11 +82,11 @@ const GIVEN_AWAY: [&str; 10] = [
     FRAME_LIGHT[0],
     FRAME_LIGHT[1],
     RUNNING_MEANS,
-    DropListOnGpu::COUNTS,
+    DropListOnGpu::COUNTS_LABEL,
 ];
 
 /// Those of the lists among them.
-const LISTS_GIVEN_AWAY: [&str; 2] = [DISTANCES, DropListOnGpu::DROPS];
+const LISTS_GIVEN_AWAY: [&str; 2] = [DISTANCES, DropListOnGpu::DROPS_LABEL];
 
 /// Label of the list of drops' distances.
 const DISTANCES: &str = "distances of drops";
@@ -289,7 +289,7 @@ impl PictureRenderer {
                 Some(KeptPlate::new(scene, &frame, mean))
             }
         };
-        let next = match stays.as_mut() {
+        let mut next = match stays.as_mut() {
             Some(plate) => plate.next(&frame, of.plate.kept_frames),
             None => Some((frame, 1)),
         };
@@ -312,18 +312,13 @@ impl PictureRenderer {
         let stands_still = next.is_none() && captured.is_empty();
         let mut is_captured = false;
         let mut kept_running = self.running.lock().unwrap_or_else(PoisonError::into_inner);
-        let count = next.as_ref().map(|(_, count)| *count);
-        let running = RunningLight::follow(&mut kept_running, of.plate.running(), scene, count);
+        let running = RunningLight::follow(&mut kept_running, of.plate.running(), scene, next.as_mut());
         if let Some((frame, count)) = next {
             let window = of.plate.window();
             let labels = match (&window, &running) {
                 (Some(_), _) => FRAME_LIGHT,
                 (None, Some(_)) => [FRAME_LIGHT[0], "means of light"],
                 (None, None) => ["light of the sky", "means of light"],
-            };
-            let frame = match kept_running.as_ref().filter(|_| running.is_some()) {
-                Some(before) => before.drawn_anew(&frame),
-                None => frame,
             };
             let traced = self.scene.prepare_paced(pool, &uploaded.0, &frame, pace, labels)?;
             let mut batches: Vec<Vec<_>> = traced.rays().into_iter().map(|band| vec![band]).collect();
@@ -351,7 +346,7 @@ impl PictureRenderer {
         let (falling, count, search) = passes.host("drops to the device", || match drops {
             PictureDrops::Listed(drops) => {
                 let falling: Vec<EyeDrop> = drops.par_iter().map(|drop| EyeDrop::new(drop, eye)).collect();
-                Ok((pool.storage(DropListOnGpu::DROPS, &falling)?, drops.len() as u32, None))
+                Ok((pool.storage(DropListOnGpu::DROPS_LABEL, &falling)?, drops.len() as u32, None))
             }
             PictureDrops::Field(mut drops) => {
                 let search = drops.prepare(&self.fields, pool, scene, plate.lighting())?;
@@ -417,8 +412,8 @@ impl PictureRenderer {
         };
         let (times, ticks) = passes.end()?;
         let found = search.map(|search| FoundList::new(search.list(), pixels.is_some()));
-        layers.push((DropListOnGpu::DROPS, drops_found));
-        layers.extend(found.iter().map(|found| (DropListOnGpu::COUNTS, found.counts().clone())));
+        layers.push((DropListOnGpu::DROPS_LABEL, drops_found));
+        layers.extend(found.iter().map(|found| (DropListOnGpu::COUNTS_LABEL, found.counts().clone())));
         layers.push(("rain", layer.clone()));
         layers.push((DISTANCES, distances.clone()));
         layers.extend(glow.iter().map(|glow| ("glow", glow.clone())));
