@@ -385,6 +385,7 @@ impl SceneView<'_> {
                     plan = plan.path_spared();
                 }
             }
+            plan.shown_spared = spared && plan.replaced && frame.sky_rays > 0;
             // Neighboring pixels are on one plane if they are no farther from it than this.
             let from_eye = found.position - origin;
             let slack = from_eye.dot(from_eye).sqrt() * (cone * 2.0 + SKYLIGHT_SLACK);
@@ -555,7 +556,7 @@ impl SceneView<'_> {
                         light.distance = hit.distance;
                         light.normal = found.normal;
                         light.position = found.position;
-                        if plan.spared {
+                        if plan.shown_spared {
                             light.shown = data.sky_irradiance(found.normal);
                             break;
                         }
@@ -709,7 +710,7 @@ impl ViewPath {
             slack: meeting.slack + light.distance * (2.0 * meeting.plan.spread + SKYLIGHT_SLACK),
             roughness: 0.0,
             normal: light.normal,
-            guessed: meeting.plan.spared,
+            guessed: meeting.plan.shown_spared,
             position: light.position,
         };
     }

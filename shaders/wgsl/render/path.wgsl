@@ -75,6 +75,8 @@ struct PathPlan {
     spread: f32,
     // True if what is averaged over neighboring pixels is left to their rays.
     spared: bool,
+    // True if the light on what a mirror shows is left to them, too: also that of a pane, of which else no means are taken.
+    shown_spared: bool,
 }
 
 // A surface that a ray of the camera has met.
@@ -188,7 +190,7 @@ fn path_plan(surface: Surface, view: vec3f, footprint: f32, told: bool, free: bo
     // If neighbors mirror other things, a mean over them would be wider than the lobe.
     let kept = drawn && surface.roughness * surface.roughness >= spread * PATH_APART;
     let fraction = select(1.0 / f32(max(rays, 1u)), render_frame.ray_fraction, told);
-    var plan = PathPlan(body, 0u, gloss, rays, 0.0, fraction, drawn, kept, false, spread, false);
+    var plan = PathPlan(body, 0u, gloss, rays, 0.0, fraction, drawn, kept, false, spread, false, false);
     if rays > 0u && path_max(body) <= 0.0 {
         plan.rays = 0u;
         plan.mirrors = select(1u, rays, drawn);
@@ -396,7 +398,7 @@ fn path_show_mirrored(path: ViewPath, light: PathLight, gloss: vec3f, meeting: P
     var shown = path;
     if light.distance >= 0.0 {
         let slack = meeting.slack + light.distance * (2.0 * meeting.plan.spread + SKYLIGHT_SLACK);
-        shown.mirror = PathSlot(light.shown, slack, gloss * light.factor, 0.0, light.normal, select(0u, 1u, meeting.plan.spared), light.position);
+        shown.mirror = PathSlot(light.shown, slack, gloss * light.factor, 0.0, light.normal, select(0u, 1u, meeting.plan.shown_spared), light.position);
     }
     return shown;
 }
@@ -722,6 +724,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                             meeting.plan = path_spared(meeting.plan);
                         }
                     }
+                    meeting.plan.shown_spared = spared && meeting.plan.replaced && render_frame.sky_rays > 0u;
                     // Neighboring pixels are on one plane if they are no farther from it than this.
                     let from_eye = found.position - origin;
                     meeting.slack = sqrt(dot(from_eye, from_eye)) * (cone * 2.0 + SKYLIGHT_SLACK);
@@ -750,7 +753,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                         light.distance = hit.distance;
                         light.normal = found.normal;
                         light.position = found.position;
-                        if meeting.plan.spared {
+                        if meeting.plan.shown_spared {
                             light.shown = sky_irradiance(found.normal);
                             break;
                         }

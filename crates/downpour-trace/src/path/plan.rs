@@ -38,6 +38,8 @@ pub(super) struct PathPlan {
     pub(super) spread: f32,
     /// True if what is averaged over neighboring pixels is left to their rays.
     pub(super) spared: bool,
+    /// True if the light on what a mirror shows is left to them, too: also that of a pane, of which else no means are taken.
+    pub(super) shown_spared: bool,
 }
 
 impl PathPlan {
@@ -54,6 +56,7 @@ impl PathPlan {
         replaced: false,
         spread: 0.0,
         spared: false,
+        shown_spared: false,
     };
 
     /// The plan without the rays of which means are taken over neighboring pixels: theirs do.
@@ -195,6 +198,7 @@ impl SceneView<'_> {
             replaced: false,
             spread,
             spared: false,
+            shown_spared: false,
         };
         if rays > 0 && path_max(body) <= 0.0 {
             plan.rays = 0;
