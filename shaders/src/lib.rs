@@ -79,6 +79,7 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
         sim::field::MODULES,
         sim::splash::MODULES,
         sim::bounce::MODULES,
+        sim::drip::MODULES,
         sim::step::MODULES,
         wind::MODULES,
     ]
@@ -114,6 +115,7 @@ pub fn kernels() -> impl Iterator<Item = &'static Kernel> {
         sim::field::KERNELS,
         sim::splash::KERNELS,
         sim::bounce::KERNELS,
+        sim::drip::KERNELS,
         sim::step::KERNELS,
         wind::KERNELS,
     ]

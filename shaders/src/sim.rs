@@ -2,6 +2,7 @@
 
 pub mod bounce;
 pub mod collision;
+pub mod drip;
 pub mod enter;
 pub mod field;
 pub mod splash;

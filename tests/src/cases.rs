@@ -5,6 +5,7 @@ mod bounce;
 mod bvh;
 mod collision;
 mod common;
+mod drip;
 mod drop;
 mod drop_light;
 mod field;
@@ -34,6 +35,7 @@ pub fn functions() -> Vec<FunctionCase> {
     [
         atlas::functions(),
         bounce::functions(),
+        drip::functions(),
         bvh::functions(),
         collision::functions(),
         common::functions(),
@@ -69,6 +71,7 @@ pub fn kernels() -> Vec<KernelCase> {
     let mut cases: Vec<KernelCase> = [
         atlas::kernels(),
         bounce::kernels(),
+        drip::kernels(),
         collision::kernels(),
         common::kernels(),
         drop_light::kernels(),

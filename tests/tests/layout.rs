@@ -34,6 +34,7 @@ use downpour_shaders::{
     Module, atlas, bvh, common, compose, drop, lattice, mask, modules, render, sim, wind,
 };
 use downpour_sim::collision::{CollisionFrame, CollisionTexel};
+use downpour_sim::drips::row::{DripFrame, DripRow};
 use downpour_sim::enter::EnterRegion;
 use downpour_sim::field::EyeDrop;
 use downpour_sim::field::frame::{FieldClass, FieldFrame, ShelterFrame};
@@ -126,6 +127,11 @@ fn hosts() -> Vec<Host> {
         host!(FieldFrame as "FieldFrame" in &sim::field::FIELD,
             sides, swept, velocity, half_shutter, turning, nearest, per_diameter, beyond, seconds, fraction,
             is_before, classes, columns, room, pane, first, begins, kept_row, radius),
+        host!(DripRow as "DripRow" in &sim::drip::DRIP,
+            position, terminal, end, longest, due, units, left, shift, key, diameter, below, until, hanging, leaving,
+            drain),
+        host!(DripFrame as "DripFrame" in &sim::drip::DRIP,
+            eye, points, wind, end, farthest, fastest, unused_1, unused_2),
         host!(SplashFrame as "SplashFrame" in &sim::splash::SPLASH,
             sides, pane, eye, half_time, now, strength, radius, per_radius, farthest, drops, first, room),
         host!(BounceFrame as "BounceFrame" in &sim::bounce::BOUNCE,

@@ -11,7 +11,7 @@ use downpour_tests::signature::all_functions;
 use downpour_tests::sources::rust_files;
 
 /// WGSL functions whose work a Rust function of another name does, and where. Kernel-level cases compare the results.
-const ELSEWHERE: [(&[&str], &str); 13] = [
+const ELSEWHERE: [(&[&str], &str); 14] = [
     (&["spacing_place"], "which invocation has which pixel; the CPU traces rows"),
     (
         &[
@@ -47,8 +47,24 @@ const ELSEWHERE: [(&[&str], &str); 13] = [
             "field_meets",
             "field_product",
             "field_shows",
+            "field_touches",
         ],
         "the CPU computes in f64 and in wide integers, in the world (downpour_sim::field, drift and view)",
+    ),
+    (
+        &[
+            "drip_add",
+            "drip_draw",
+            "drip_falls",
+            "drip_first",
+            "drip_hangs",
+            "drip_largest",
+            "drip_last",
+            "drip_leaves",
+            "drip_meets",
+            "drip_point",
+        ],
+        "the CPU computes in f64, in the world (downpour_sim::drips, its points, and downpour_sim::view)",
     ),
     (&["bounce_row", "shelter_carried"], "downpour_sim::drift"),
     (

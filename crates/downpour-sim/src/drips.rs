@@ -9,6 +9,8 @@
 //! A drop hangs and grows before it falls, by quadratic drag from rest and with the wind, until it hits something. Water that has
 //! dripped runs on over the surface that it falls on, and may drip again.
 //!
+//! In a steady wind a device finds the same drops ([`row`]; `gpu::DripPipeline`, feature `wgpu`).
+//!
 //! Limits. Rain falls straight down on what is topmost, even in a wind; the surfaces take up nothing but their storage. A scene that is
 //! larger than 80 m is searched around the eye. Objects are taken as they are when points are found: what moves drips where it was. In
 //! a steady wind the end of a fall is found once per point. Wires and leaves that are smaller than a cell are met by chance, with the
@@ -39,8 +41,14 @@ mod clock;
 mod emitter;
 mod fall;
 mod points;
+pub mod row;
 mod runoff;
 mod surfaces;
+#[cfg(feature = "wgpu")]
+pub(crate) mod table;
+
+#[cfg(feature = "wgpu")]
+use std::sync::{Arc, OnceLock};
 
 use downpour_drop::drip::{Drip, MAX_DRIPPING_PER_S};
 use downpour_drop::fall_speed::TerminalSpeed;
@@ -54,6 +62,8 @@ use emitter::{Emitter, Query};
 use fall::MAX_FALL_S;
 pub use points::{DripPoint, DripPoints, MAX_POINTS};
 pub use surfaces::{CELL_M, DripRegion, MAX_CELLS};
+#[cfg(feature = "wgpu")]
+use table::DripTable;
 
 use crate::SimError;
 use crate::facets::Facets;
@@ -95,8 +105,14 @@ pub struct DripOptions {
 pub struct Drips {
     emitters: Vec<Emitter>,
     options: DripOptions,
+    /// End of the rain, s.
+    #[cfg(feature = "wgpu")]
+    end_s: f64,
     /// Number of points without drops: nothing falls, or only into what is at the point.
     left_out: usize,
+    /// The points as a device has them, once it has asked.
+    #[cfg(feature = "wgpu")]
+    table: OnceLock<Option<Arc<DripTable>>>,
 }
 
 impl Drips {
@@ -130,7 +146,15 @@ impl Drips {
         let wanted = found.len() + set.len();
         emitters.par_iter_mut().for_each(|emitter| emitter.land(obstacles, &facets, &options.wind));
         emitters.retain(Emitter::has_room);
-        Ok(Self { left_out: wanted - emitters.len(), emitters, options: options.clone() })
+        Ok(Self {
+            left_out: wanted - emitters.len(),
+            emitters,
+            options: options.clone(),
+            #[cfg(feature = "wgpu")]
+            end_s: rain.map_or(f64::INFINITY, |rain| rain.end_s),
+            #[cfg(feature = "wgpu")]
+            table: OnceLock::new(),
+        })
     }
 
     /// Number of points that drip.
@@ -202,6 +226,19 @@ impl Drips {
             drops.truncate(view.max_drops as usize);
         }
         Ok(drops)
+    }
+
+    /// True if a device can find the drops: in a steady wind, where a fall ends in the same place each time.
+    #[cfg(feature = "wgpu")]
+    #[must_use]
+    pub fn fits_device(&self) -> bool {
+        self.table().is_some()
+    }
+
+    /// The points as a device has them.
+    #[cfg(feature = "wgpu")]
+    pub(crate) fn table(&self) -> Option<&Arc<DripTable>> {
+        self.table.get_or_init(|| DripTable::new(self).map(Arc::new)).as_ref()
     }
 
     /// Impacts in a box within a span of time, s, without its beginning and including its end, of drops from a diameter in m on. Their

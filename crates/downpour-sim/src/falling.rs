@@ -1,7 +1,7 @@
 //! Drops in the form that a picture needs.
 
 use downpour_math::ops;
-use downpour_shaders::sim::field::{FIELD_BOUNCED, FIELD_NORMAL_STEPS, FIELD_SPLASH};
+use downpour_shaders::sim::field::{FIELD_BOUNCED, FIELD_DRIPPED, FIELD_NORMAL_STEPS, FIELD_SPLASH};
 use glam::{DVec3, Vec3};
 
 use crate::resolved::Resolved;
@@ -110,7 +110,8 @@ pub struct EyeDrop {
     pub id: u32,
     /// Part of the exposure in which it exists, s from the picture's time.
     pub present: [f32; 2],
-    /// Terminal speed, m/s; `FIELD_BOUNCED` if it is not known or for a droplet that rebounded; of a splash [`eye_drop_standing`].
+    /// Terminal speed, m/s; `FIELD_BOUNCED` if it is not known or for a droplet that rebounded, `FIELD_DRIPPED` for a drop that drips; of a
+    /// splash [`eye_drop_standing`].
     pub speed: f32,
     /// Lower half of its id.
     pub id_low: u32,
@@ -129,6 +130,7 @@ impl EyeDrop {
             present: drop.present_s.map(|time| time.clamp(-ALWAYS_S, ALWAYS_S)),
             speed: match drop.kind {
                 DropKind::Splash => eye_drop_standing(drop.normal.into()),
+                DropKind::Dripped => FIELD_DRIPPED,
                 _ => FIELD_BOUNCED,
             },
             id_low: drop.id as u32,

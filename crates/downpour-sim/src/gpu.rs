@@ -1,6 +1,7 @@
 //! GPU versions, behind the feature `wgpu`.
 
 pub mod collision;
+mod drips;
 mod error;
 mod field;
 mod list;
@@ -8,6 +9,7 @@ mod simulation;
 mod step_list;
 
 pub use collision::{CollisionMapOnGpu, GpuCollisionMap};
+pub use drips::{DripPipeline, DripSearch, DripsOnGpu};
 pub use error::GpuSimError;
 pub use field::{FieldOnGpu, FieldPass, FieldPipeline, FieldSearch, HolesOnGpu, ObstaclesOnGpu};
 pub use list::DropListOnGpu;

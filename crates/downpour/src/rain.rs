@@ -335,6 +335,7 @@ impl Rain {
             max_room: self.max_room,
             pane: None,
             known: &[],
+            drips: None,
             splashes: splashes.as_ref(),
             bounce: bounce.as_ref(),
         };

@@ -14,6 +14,7 @@ use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_drop::splash::SplashLaw;
 use downpour_drop::spray::Spray;
 use downpour_sim::SimError;
+use downpour_sim::drips::Drips;
 use downpour_sim::field::{FallingDrop, RainField, VisibleDrops};
 use downpour_sim::impacts::SplashOptions;
 use downpour_sim::resolved::Resolved;
@@ -54,8 +55,21 @@ pub struct ShowerView {
     pub resolved: Resolved,
     /// The pane before the eye: there is no rain on the eye's side.
     pub pane: Option<PanePlane>,
-    /// Drops that drip, and splashes and droplets that rebound unless the device finds them, in the world: these are found already.
+    /// Drops that drip, splashes and droplets that rebound, unless the device finds them, in the world: these are found already.
     pub droplets: Vec<FallingDrop>,
+    /// Drops that drip, if the device finds them.
+    pub drips: Option<DripView>,
+}
+
+/// Drops that drip before a picture, for a device that finds them.
+#[derive(Clone, Debug)]
+pub struct DripView {
+    /// Where they drip.
+    pub drips: Arc<Drips>,
+    /// The picture, in the world; where more drops than its most might be seen, the nearest are.
+    pub view: View,
+    /// Least diameter of a drop, pixels.
+    pub least_pixels: f64,
 }
 
 /// A rain whose drops a device finds.
@@ -204,6 +218,23 @@ impl Shower {
             .map_or(Ok(Vec::new()), |dripping| dripping.visible(frame_scene, view, least, time_s))
     }
 
+    /// The same for a picture whose drops a device finds: those that it is to find, or else a list.
+    fn drips_of_device(
+        &self,
+        frame_scene: &FrameScene,
+        view: &View,
+        least: f64,
+        time_s: f64,
+    ) -> Result<(Option<DripView>, Vec<FallingDrop>), ShowerError> {
+        #[cfg(feature = "wgpu")]
+        if let Some(dripping) = &self.dripping
+            && let Some(view) = dripping.of_device(frame_scene, view, least)?
+        {
+            return Ok((Some(view), Vec::new()));
+        }
+        Ok((None, self.drips(frame_scene, view, least, time_s)?))
+    }
+
     /// True if drops splash, where there is rain.
     #[must_use]
     pub fn has_splashes(&self) -> bool {
@@ -307,8 +338,8 @@ impl Shower {
         let resolved = field.resolved(&view, time_s, max_room)?;
         let least = resolved.least_pixels;
         let obstacles = obstacles(frame_scene);
-        let mut droplets =
-            self.drips(frame_scene, &of_drips, drips_least(&self.weather.rain, &resolved), time_s)?;
+        let least_of_drips = drips_least(&self.weather.rain, &resolved);
+        let (drips, mut droplets) = self.drips_of_device(frame_scene, &of_drips, least_of_drips, time_s)?;
         let splashes = self.splashes_at(time_s);
         #[cfg(feature = "wgpu")]
         let (on_device, bounce) = (
@@ -328,7 +359,7 @@ impl Shower {
             keep_outside(&mut droplets, pane, &view);
         }
         let rain = ShowerRain::Closed { field: Arc::clone(field), splashes: on_device, bounce, max_room };
-        Ok(ShowerView { rain, time_s, view, resolved, pane, droplets })
+        Ok(ShowerView { rain, time_s, view, resolved, pane, droplets, drips })
     }
 
     /// Request to a device that finds the drops of [`Shower::at`]: drops in closed form, of which it has room for `max_room`, or
@@ -354,14 +385,15 @@ impl Shower {
         };
         let (view, picture) = stepped.on_device(gpu, scenery, frame_scene, time_s, passed)?;
         let resolved = picture.resolved();
-        let drips = View { max_drops: self.weather.rain.max_drops, ..frame_scene.view()? };
-        let mut droplets = self.drips(frame_scene, &drips, resolved.least_pixels, time_s)?;
+        let of_drips = View { max_drops: self.weather.rain.max_drops, ..frame_scene.view()? };
+        let (drips, mut droplets) =
+            self.drips_of_device(frame_scene, &of_drips, resolved.least_pixels, time_s)?;
         let pane = pane_plane(&self.weather, &frame_scene.viewpoint)?;
         if let Some(pane) = &pane {
             keep_outside(&mut droplets, pane, &view);
         }
         let rain = ShowerRain::Stepped { picture, splashes: self.splashes_at(time_s) };
-        Ok(ShowerView { rain, time_s, view, resolved, pane, droplets })
+        Ok(ShowerView { rain, time_s, view, resolved, pane, droplets, drips })
     }
 
     /// The drops of a device a little later than those of `shown`, at `time_s`, as a picture of part of its exposure shows them.
@@ -381,7 +413,8 @@ impl Shower {
                 let view = View { least_pixels, ..frame_scene.view()? };
                 let picture = picture.later(time_s - shown.time_s);
                 let rain = ShowerRain::Stepped { picture, splashes: *splashes };
-                Ok(ShowerView { rain, view, time_s, ..shown.clone() })
+                let drips = shown.drips.clone().map(|drips| DripView { view, ..drips });
+                Ok(ShowerView { rain, view, time_s, drips, ..shown.clone() })
             }
             ShowerRain::Closed { field, max_room, .. } => {
                 self.closed_view(field, frame_scene, time_s, *max_room)

@@ -61,6 +61,8 @@ shared_constants! {
         FIELD_SPLASH: f32 = -1.0;
         /// Steps of each of the two numbers of the normal of the surface of a splash, from 0 to 1: both together are a whole f32.
         FIELD_NORMAL_STEPS: u32 = 2047;
+        /// In place of the terminal speed of a drop: one that drips.
+        FIELD_DRIPPED: f32 = -0.5;
         /// In place of the terminal speed of a drop: a droplet that rebounded, or whose speed is not known.
         FIELD_BOUNCED: f32 = 0.0;
         /// Distance from a surface below which a drop counts as on it, m.

@@ -310,7 +310,7 @@ fn project_drop(drop: EyeDrop) -> ProjectShown {
     shown.drop.reach = -1.0;
     let camera = project_frame.camera;
     let shutter = project_frame.shutter;
-    let is_splash = drop.speed < 0.0;
+    let is_splash = drop.speed <= FIELD_SPLASH;
     // A splash is there for all of the exposure, or not at all.
     let present = project_present(drop.present, select(shutter, 0.0, is_splash));
     if present.x > present.y {

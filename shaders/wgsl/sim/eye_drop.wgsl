@@ -12,8 +12,8 @@ struct EyeDrop {
     id: u32,
     // When it is there, s from the time of the picture.
     present: vec2f,
-    // Terminal speed, m/s; 0 (FIELD_BOUNCED) for a droplet that rebounded; of a splash the normal of its surface (eye_drop_standing),
-    // which is FIELD_SPLASH or below.
+    // Terminal speed, m/s; 0 (FIELD_BOUNCED) for a droplet that rebounded, FIELD_DRIPPED for a drop that drips; of a splash the normal of its
+    // surface (eye_drop_standing), which is FIELD_SPLASH or below.
     speed: f32,
     // Lower half of its id.
     id_low: u32,

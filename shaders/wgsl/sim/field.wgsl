@@ -188,23 +188,36 @@ fn field_product(a: u32, b: u32) -> vec2u {
     return vec2u(a * b, (a >> 16u) * (b >> 16u) + (cross >> 16u) + (middle >> 16u));
 }
 
-// Periods that a chain has fallen at the time of the picture: whole ones, and a fraction in units of 2^-32.
-fn field_fallen(rate: u32, seconds: u32, fraction: u32, is_before: u32) -> vec2u {
-    // Three words, in units of 2^-61 periods.
+// What goes on at a rate, in units of 2^-shift per second, up to a time: whole ones in two words, the high one first, and a fraction in
+// units of 2^-32. `shift`: 1 to 31.
+fn field_moved(rate: u32, shift: u32, seconds: u32, fraction: u32, is_before: u32) -> vec3u {
+    // Three words, in units of 2^-(32 + shift).
     let a = field_product(rate, fraction);
     let b = field_product(rate, seconds);
     let second = a.y + b.x;
     let third = b.y + select(0u, 1u, second < a.y);
-    let fallen = vec2u((second >> 29u) | (third << 3u), (a.x >> 29u) | (second << 3u));
+    let rest = 32u - shift;
+    let moved = vec3u(third >> shift, (second >> shift) | (third << rest), (a.x >> shift) | (second << rest));
     if is_before == 1u {
-        return vec2u(~fallen.x + select(0u, 1u, fallen.y == 0u), ~fallen.y + 1u);
+        return field_difference(vec3u(0u), moved);
     }
-    return fallen;
+    return moved;
+}
+
+// Periods that a chain has fallen at the time of the picture: whole ones, and a fraction in units of 2^-32.
+fn field_fallen(rate: u32, seconds: u32, fraction: u32, is_before: u32) -> vec2u {
+    return field_moved(rate, 29u, seconds, fraction, is_before).yz;
 }
 
 // Difference of two numbers of two words, the high one first.
 fn field_less(a: vec2u, b: vec2u) -> vec2u {
     return vec2u(a.x - b.x - select(0u, 1u, a.y < b.y), a.y - b.y);
+}
+
+// Difference of two numbers of three words, the high one first.
+fn field_difference(a: vec3u, b: vec3u) -> vec3u {
+    let borrows = a.y < b.y || (a.y == b.y && a.z < b.z);
+    return vec3u(a.x - b.x - select(0u, 1u, borrows), field_less(a.yz, b.yz));
 }
 
 // True if a number of two words, the high one first and with a sign, is below another.
@@ -271,6 +284,21 @@ fn field_beyond(drop: EyeDrop) -> vec2f {
     return eye_drop_outside(dot(pane.xyz, begin) - pane.w, dot(pane.xyz, end) - pane.w, half_time);
 }
 
+// True if what is seen of a drop within a radius, m, touches the picture in a part of the exposure, s from the picture's time.
+fn field_touches(drop: EyeDrop, part: vec2f, radius: f32) -> bool {
+    let half_time = field_frame.half_shutter;
+    let times = clamp(part, vec2f(-half_time), vec2f(half_time));
+    let begin = eye_drop_position(drop, field_frame.velocity, field_frame.turning, times.x);
+    let end = eye_drop_position(drop, field_frame.velocity, field_frame.turning, times.y);
+    for (var k = 0u; k < FIELD_SIDES; k += 1u) {
+        let side = field_frame.sides[k].xyz;
+        if min(dot(side, begin), dot(side, end)) > radius {
+            return false;
+        }
+    }
+    return true;
+}
+
 // True if the path of what is seen touches the picture, and it is between the least distance and that up to which drops are searched
 // for.
 fn field_shows(drop: EyeDrop, kind: FieldClass) -> bool {
@@ -280,16 +308,7 @@ fn field_shows(drop: EyeDrop, kind: FieldClass) -> bool {
         return false;
     }
     let half_time = field_frame.half_shutter;
-    let begin = eye_drop_position(drop, field_frame.velocity, field_frame.turning, -half_time);
-    let end = eye_drop_position(drop, field_frame.velocity, field_frame.turning, half_time);
-    let radius = field_frame.radius * drop.diameter + kind.margin;
-    for (var k = 0u; k < FIELD_SIDES; k += 1u) {
-        let side = field_frame.sides[k].xyz;
-        if min(dot(side, begin), dot(side, end)) > radius {
-            return false;
-        }
-    }
-    return true;
+    return field_touches(drop, vec2f(-half_time, half_time), field_frame.radius * drop.diameter + kind.margin);
 }
 
 // True if a column of a class may hold drops of the picture.

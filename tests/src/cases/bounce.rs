@@ -71,6 +71,7 @@ fn droplets_case(gpu: &Gpu, kind: Kind, bounce: Bounce) -> Result<Run, GpuError>
         max_room: 1 << 20,
         pane: kind.pane,
         known: &[],
+        drips: None,
         splashes: None,
         bounce: Some(&bounce),
     };
@@ -92,7 +93,7 @@ fn droplets_case(gpu: &Gpu, kind: Kind, bounce: Bounce) -> Result<Run, GpuError>
         let [begin, end] = drop.present.map(finite);
         [1.0, x, y, z, u, v, w, drop.diameter * 10.0, begin, end].map(f32::to_bits)
     };
-    Ok(paired(&expected, drops, words))
+    Ok(paired(&expected, &drops, words))
 }
 
 /// The cases.

@@ -15,7 +15,9 @@ use downpour_shaders::sim::field::{
     SHELTER_AMONG_HOLES_KERNEL, SHELTER_KERNEL,
 };
 use downpour_shaders::sim::splash::{SPLASH, SPLASH_FIND_KERNEL};
-use downpour_sim::field::chain::{FieldTime, field_between, field_fallen, field_fraction, field_part};
+use downpour_sim::field::chain::{
+    FieldTime, field_between, field_difference, field_fallen, field_fraction, field_moved, field_part,
+};
 use downpour_sim::field::thinning::{field_interval, field_is_below, field_less};
 use downpour_sim::field::{
     EyeDrop, FallingDrop, RainField, drift_position, eye_drop_normal, eye_drop_outside, eye_drop_standing,
@@ -49,6 +51,16 @@ fn number(random: [u32; 4]) -> Vec<u32> {
 /// A time up to a million seconds.
 fn time(random: [u32; 4]) -> Vec<u32> {
     vec![random[0] % 1_000_001, random[1], random[2] % 2]
+}
+
+/// A number of three words near 0.
+fn three(random: [u32; 4]) -> Vec<u32> {
+    [random[0], random[1], random[2]].map(|word| (word % 5).wrapping_sub(2)).to_vec()
+}
+
+/// Bits by which a rate is shifted.
+fn shift(random: [u32; 4]) -> Vec<u32> {
+    vec![1 + random[0] % 31]
 }
 
 /// A number of two words near 0.
@@ -134,6 +146,14 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             let rate = a.u32();
             let [seconds, fraction, is_before] = a.u32s();
             field_fallen(rate, FieldTime { seconds, fraction, is_before }).words()
+        }),
+        FunctionCase::new("field_moved", &FIELD, &[AnyWord, Made(shift), Made(time)], exact, |a| {
+            let (rate, shift) = (a.u32(), a.u32());
+            let [seconds, fraction, is_before] = a.u32s();
+            field_moved(rate, shift, FieldTime { seconds, fraction, is_before }).words()
+        }),
+        FunctionCase::new("field_difference", &FIELD, &[Made(three), Made(three)], exact, |a| {
+            field_difference(a.u32s(), a.u32s()).words()
         }),
         FunctionCase::new("field_product", &FIELD, &[AnyWord, AnyWord], exact, |a| {
             let product = u64::from(a.u32()) * u64::from(a.u32());
@@ -333,6 +353,7 @@ fn found(gpu: &Gpu, kind: Kind) -> Result<Found, GpuError> {
         max_room: most,
         pane: None,
         known: &[],
+        drips: None,
         splashes: None,
         bounce: None,
     };
@@ -346,6 +367,7 @@ fn found(gpu: &Gpu, kind: Kind) -> Result<Found, GpuError> {
         max_room: most,
         pane: kind.pane,
         known: &known,
+        drips: None,
         splashes: None,
         bounce: None,
     };
@@ -449,17 +471,18 @@ fn crowns_case(gpu: &Gpu, kind: Kind) -> Result<Run, GpuError> {
         max_room: 1 << 20,
         pane: kind.pane,
         known: &[],
+        drips: None,
         splashes: Some(&options),
         bounce: None,
     };
     let (mut drops, _) = listed_by(gpu, &field, (&scene, kind.has_holes, origin), &search)?;
-    drops.retain(|drop| drop.speed < 0.0);
+    drops.retain(|drop| drop.speed <= FIELD_SPLASH);
     let words = |drop: &EyeDrop| {
         let [x, y, z] = drop.offset;
         let [begin, end] = drop.present;
         [1.0, x, y, z, drop.diameter * 10.0, begin, end].map(f32::to_bits)
     };
-    Ok(paired(&expected, drops, words))
+    Ok(paired(&expected, &drops, words))
 }
 
 /// The drops that the device lists for a search, and the least size in pixels that is listed.
@@ -485,18 +508,30 @@ pub(super) fn listed_by(
     Ok((drops, pass.resolved().least_pixels))
 }
 
+/// Drops by their ids, and in order of time where several have one: a drop that hangs and then falls.
+fn numbered(drops: &[EyeDrop]) -> BTreeMap<(u32, u32, u32), EyeDrop> {
+    let mut sorted: Vec<&EyeDrop> = drops.iter().collect();
+    sorted.sort_by(|a, b| a.present[0].total_cmp(&b.present[0]));
+    let mut numbers: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+    let mut next = |drop: &EyeDrop| {
+        let number = numbers.entry((drop.id, drop.id_low)).or_default();
+        *number += 1;
+        (drop.id, drop.id_low, *number)
+    };
+    sorted.into_iter().map(|drop| (next(drop), *drop)).collect()
+}
+
 /// Drops of both sides by their ids, as words; 0 where one side has none.
 pub(super) fn paired<const N: usize>(
     expected: &[EyeDrop],
-    found: Vec<EyeDrop>,
+    found: &[EyeDrop],
     words: impl Fn(&EyeDrop) -> [u32; N],
 ) -> Run {
-    let id = |drop: &EyeDrop| (drop.id, drop.id_low);
-    let mut others: BTreeMap<(u32, u32), EyeDrop> = found.into_iter().map(|drop| (id(&drop), drop)).collect();
+    let mut others = numbered(found);
     let (mut cpu, mut gpu) = (Vec::new(), Vec::new());
-    for drop in expected {
-        cpu.extend(words(drop));
-        gpu.extend(others.remove(&id(drop)).as_ref().map_or([0; N], &words));
+    for (key, drop) in numbered(expected) {
+        cpu.extend(words(&drop));
+        gpu.extend(others.remove(&key).as_ref().map_or([0; N], &words));
     }
     // What only the device has.
     for drop in others.values() {

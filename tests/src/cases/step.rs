@@ -711,8 +711,16 @@ fn list_case(gpu: &Gpu, setup: Listed) -> Result<Run, GpuError> {
     let expected: Vec<EyeDrop> = listed.drops.iter().filter_map(outside).map(with_speed).collect();
     let known = [EyeDrop { diameter: 3.0e-3, ..EyeDrop::default() }; 3];
     let (map, splashes) = (on_gpu.as_ref(), splashes.as_ref());
-    let picture =
-        StepPicture { view: &shown, after_s, map, pane, known: &known, splashes, max_room: 1 << 20 };
+    let picture = StepPicture {
+        view: &shown,
+        after_s,
+        map,
+        pane,
+        known: &known,
+        drips: None,
+        splashes,
+        max_room: 1 << 20,
+    };
     let pass = twin.list(gpu, &picture).map_err(of_gpu)?;
     let poison = vec![f32::from_bits(crate::compare::POISON); 12 * pass.list().room() as usize];
     let after_known = (known.len() * size_of::<EyeDrop>()) as u64;

@@ -13,6 +13,7 @@ use downpour_shaders::render::rain::{
     PROJECT_NARROW, PROJECT_NARROW_SAMPLES, PROJECT_OSCILLATES_MAX, PROJECT_OSCILLATES_MIN, PROJECT_SMALL,
     PROJECT_STILL, PROJECT_THIN, PROJECT_WIDE_SAMPLES, STREAK_TURN,
 };
+use downpour_shaders::sim::field::FIELD_SPLASH;
 use downpour_sim::field::{EyeDrop, eye_drop_normal};
 use glam::{Vec2, Vec3};
 
@@ -353,7 +354,7 @@ impl<'a> Projector<'a> {
     pub fn project_drop(&self, drop: &EyeDrop) -> Option<Projected> {
         let frame = &self.frame;
         let camera = &frame.camera;
-        let is_splash = drop.speed < 0.0;
+        let is_splash = drop.speed <= FIELD_SPLASH;
         // A splash is there for all of the exposure, or not at all.
         let present = project_present(drop.present, if is_splash { 0.0 } else { frame.shutter });
         if present[0] > present[1] {

@@ -21,9 +21,33 @@ pub struct DripRain {
     pub storage_m: f64,
 }
 
+/// Drops per second, as a whole number of units that a device can count in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct DripRate {
+    /// Number of units of 2^-shift drops per second.
+    pub(super) units: u32,
+    /// From 1 to 31: as many units as 32 bits hold.
+    pub(super) shift: u32,
+}
+
+impl DripRate {
+    /// The rate nearest to so many drops per second, at most 2^31.
+    fn new(per_s: f64) -> Self {
+        let units = |shift: u32| (per_s.max(0.0) * f64::from(1u32 << shift)).round();
+        let shift = (1..32).rev().find(|&shift| units(shift) <= f64::from(u32::MAX)).unwrap_or(1);
+        Self { units: units(shift).min(f64::from(u32::MAX)) as u32, shift }
+    }
+
+    /// Drops per second.
+    fn per_s(self) -> f64 {
+        f64::from(self.units) / f64::from(1u32 << self.shift)
+    }
+}
+
 /// Number of drops that have left a point, as a function of time: it rises with the rain, and after it by a part that decays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Clock {
+    pub(super) rate: DripRate,
     per_s: f64,
     start_s: f64,
     stop_s: f64,
@@ -35,18 +59,38 @@ impl Clock {
     pub(super) fn new(rain: &DripRain, per_s: f64, flow_m: f64) -> Option<Self> {
         let lag_s = flow_m / FILM_M_S;
         let start_s = rain.begin_s + rain.storage_m / rain.rate_m_s + lag_s;
-        let drips = per_s > 0.0 && start_s.is_finite() && rain.end_s > start_s;
-        drips.then_some(Self { per_s, start_s, stop_s: rain.end_s, drain_s: lag_s + DRAINING_S })
+        let rate = DripRate::new(per_s);
+        let drips = rate.units > 0 && start_s.is_finite() && rain.end_s > start_s;
+        let drain_s = lag_s + DRAINING_S;
+        drips.then_some(Self { rate, per_s: rate.per_s(), start_s, stop_s: rain.end_s, drain_s })
     }
 
     /// The clock of a point that has always dripped and always will.
     pub(super) fn steady(per_s: f64, start_s: f64) -> Self {
-        Self { per_s, start_s, stop_s: f64::INFINITY, drain_s: DRAINING_S }
+        let rate = DripRate::new(per_s);
+        Self { rate, per_s: rate.per_s(), start_s, stop_s: f64::INFINITY, drain_s: DRAINING_S }
+    }
+
+    /// Drops per second while it rains.
+    pub(super) fn per_s(&self) -> f64 {
+        self.per_s
+    }
+
+    /// Number of drops that would have left at a time if the rain did not end.
+    pub(super) fn count_in_rain(&self, time_s: f64) -> f64 {
+        (time_s - self.start_s) * self.per_s
+    }
+
+    /// Number of drops that have left when the rain ends, and the time constant with which the point then runs dry, s; `None` if the rain
+    /// goes on.
+    #[cfg(feature = "wgpu")]
+    pub(super) fn end(&self) -> Option<[f64; 2]> {
+        self.stop_s.is_finite().then(|| [self.count_in_rain(self.stop_s), self.drain_s])
     }
 
     /// Number of drops, with a fraction, that have left at a time; negative before the first.
     pub(super) fn count(&self, time_s: f64) -> f64 {
-        let rained = (time_s.min(self.stop_s) - self.start_s) * self.per_s;
+        let rained = self.count_in_rain(time_s.min(self.stop_s));
         let after = time_s - self.stop_s;
         if after <= 0.0 || !self.stop_s.is_finite() {
             return rained;

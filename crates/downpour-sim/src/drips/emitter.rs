@@ -3,12 +3,17 @@
 use downpour_drop::drip::{BROAD_RADIUS_M, Drip};
 use downpour_drop::fall_speed::time_of_fall;
 use downpour_math::rng::{rng_draw, rng_unit, seed_words};
+use downpour_shaders::sim::drip::{DRIP_DROP, DRIP_HANGS, DRIP_JITTER, DRIP_MARGIN};
+#[cfg(feature = "wgpu")]
+use downpour_shaders::sim::field::FIELD_ALWAYS;
 use downpour_wind::UniformWind;
 use glam::DVec3;
 
 use super::clock::{Clock, DripRain};
 use super::fall::{Fall, Landing, MAX_FALL_S};
 use super::points::DripPoint;
+#[cfg(feature = "wgpu")]
+use super::row::DripRow;
 use super::{DripOptions, MIN_PER_S};
 use crate::SimError;
 use crate::facets::Facets;
@@ -17,17 +22,16 @@ use crate::impacts::Impact;
 use crate::shelter::Obstacles;
 
 /// Part of a drop's diameter by which its center hangs below the edge.
-const HANGS: f64 = 0.4;
+const HANGS: f64 = DRIP_HANGS as f64;
 
 /// Jitter of the time of a drop, in intervals: half of it before, half after.
-const JITTER: f64 = 0.3;
+const JITTER: f64 = DRIP_JITTER as f64;
 
 /// Range of the radii of broad edges relative to the usual one, as a half width.
 const UNEVEN: f64 = 0.35;
 
-/// Dimensions of random numbers.
+/// Dimension of the random numbers of a point.
 const OF_POINT: u32 = 8317;
-const OF_DROP: u32 = 8329;
 
 /// Obstacles and wind that a drop falls among.
 #[derive(Clone, Copy)]
@@ -48,7 +52,6 @@ pub(super) struct Emitter {
     is_jet: bool,
     /// Terminal speed, m/s.
     terminal: f64,
-    per_s: f64,
     clock: Clock,
     /// Fraction of an interval by which its drops are late.
     phase: f64,
@@ -103,7 +106,6 @@ impl Emitter {
             diameter: hanging.diameter_m,
             is_jet: false,
             terminal: options.speed.at(hanging.diameter_m)?,
-            per_s,
             clock,
             phase,
             key,
@@ -140,7 +142,7 @@ impl Emitter {
 
     /// Volume of its water while it rains, m^3/s.
     pub(super) fn flow(&self) -> f64 {
-        self.per_s * downpour_drop::drip::sphere_volume(self.diameter)
+        self.clock.per_s() * downpour_drop::drip::sphere_volume(self.diameter)
     }
 
     /// Diameter of its largest drops, m.
@@ -151,13 +153,55 @@ impl Emitter {
     /// Middle and radius of a ball that holds its drops, where an unsteady wind blows at up to `reach` m/s.
     pub(super) fn around(&self, reach: f64) -> (DVec3, f64) {
         let middle = self.position.midpoint(self.end);
-        (middle, 0.5 * self.position.distance(self.end) + reach * self.longest_s + 0.02)
+        (middle, 0.5 * self.position.distance(self.end) + reach * self.longest_s + f64::from(DRIP_MARGIN))
+    }
+
+    /// The point as a device has it, relative to an origin.
+    #[cfg(feature = "wgpu")]
+    pub(super) fn row(&self, origin: DVec3) -> DripRow {
+        let end = self.clock.end();
+        let words = |count: f64| {
+            let units = (count * 4_294_967_296.0).round() as i128;
+            [(units >> 64) as u32, (units >> 32) as u32, units as u32]
+        };
+        let cube = |diameter: f64| (diameter * diameter * diameter) as f32;
+        let whole = self.hanging.hanging_diameter(1.0);
+        let until = self.landing.map_or(FIELD_ALWAYS, |landing| landing.after_s as f32);
+        DripRow {
+            position: (self.position - origin).as_vec3(),
+            terminal: self.terminal as f32,
+            end: (self.end - origin).as_vec3(),
+            longest: self.longest_s as f32,
+            due: words(self.phase - self.clock.count_in_rain(0.0)),
+            units: self.clock.rate.units,
+            left: words(end.map_or(0.0, |[count, _]| count - self.phase)),
+            shift: self.clock.rate.shift,
+            key: self.key,
+            diameter: self.diameter as f32,
+            below: self.below() as f32,
+            until,
+            hanging: if self.is_jet { 0.0 } else { cube(whole) },
+            leaving: cube(self.hanging.diameter_m),
+            drain: end.map_or(0.0, |[_, drain_s]| drain_s as f32),
+        }
+    }
+
+    /// Upper bound of the number of drops in an exposure, which grows with its half time: at an instant, and per second of that.
+    #[cfg(feature = "wgpu")]
+    pub(super) fn most(&self) -> [f64; 2] {
+        let per_s = self.clock.per_s();
+        let falling = self.longest_s * per_s + JITTER + 1.0;
+        if self.is_jet { [falling, 2.0 * per_s] } else { [falling + JITTER + 2.0, 4.0 * per_s] }
+    }
+
+    /// Distance of the center of a drop from the edge when it begins to fall, m.
+    fn below(&self) -> f64 {
+        if self.is_jet { 0.5 * self.diameter } else { self.hangs(1.0) }
     }
 
     /// Fall of a drop that leaves at a time.
     fn fall<'a>(&self, wind: &'a UniformWind, begin_s: f64) -> Fall<'a> {
-        let below = if self.is_jet { 0.5 * self.diameter } else { self.hangs(1.0) };
-        Fall::new(wind, self.position - DVec3::Y * below, self.terminal, begin_s)
+        Fall::new(wind, self.position - DVec3::Y * self.below(), self.terminal, begin_s)
     }
 
     /// Distance of the center of the hanging drop from the edge, m.
@@ -167,7 +211,7 @@ impl Emitter {
 
     /// Time at which a drop leaves, s; infinite for one that never does.
     fn leaves(&self, drop: i64) -> f64 {
-        let [jitter, ..] = drawn(self.key, drop, OF_DROP);
+        let [jitter, ..] = drawn(self.key, drop, DRIP_DROP);
         self.clock.time(drop as f64 + self.phase + JITTER * (jitter - 0.5))
     }
 
@@ -178,7 +222,7 @@ impl Emitter {
     }
 
     fn id(&self, drop: i64) -> u64 {
-        let [a, b, ..] = rng_draw(self.key, drop as u32, (drop >> 32) as u32, OF_DROP + 1);
+        let [a, b, ..] = rng_draw(self.key, drop as u32, (drop >> 32) as u32, DRIP_DROP + 1);
         u64::from(a) << 32 | u64::from(b)
     }
 
@@ -228,7 +272,7 @@ impl Emitter {
             let leaves = self.leaves(drop);
             if leaves > time_s - half {
                 // Before its first drop an edge becomes wet.
-                let begin = if since.is_finite() { since } else { leaves - 1.0 / self.per_s };
+                let begin = if since.is_finite() { since } else { leaves - 1.0 / self.clock.per_s() };
                 let seen = time_s.clamp(begin, leaves);
                 // The last one hangs for good.
                 let fraction = if leaves.is_finite() { (seen - begin) / (leaves - begin) } else { 0.5 };

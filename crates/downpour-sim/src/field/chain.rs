@@ -125,14 +125,30 @@ impl FieldTime {
     }
 }
 
+/// What goes on at a rate, in units of 2^-shift per second, up to a time: whole ones in two words, the high one first, and a fraction in
+/// units of 2^-32. `shift`: 1 to 31.
+#[must_use]
+pub fn field_moved(rate: u32, shift: u32, time: FieldTime) -> [u32; 3] {
+    let units = u128::from(u64::from(time.seconds) << 32 | u64::from(time.fraction));
+    // In units of 2^-(32 + shift).
+    let moved = (u128::from(rate) * units) >> shift;
+    let moved = if time.is_before == 1 { moved.wrapping_neg() } else { moved };
+    [(moved >> 64) as u32, (moved >> 32) as u32, moved as u32]
+}
+
+/// Difference of two numbers of three words, the high one first.
+#[must_use]
+pub fn field_difference(a: [u32; 3], b: [u32; 3]) -> [u32; 3] {
+    let number = |words: [u32; 3]| words.iter().fold(0u128, |number, &word| number << 32 | u128::from(word));
+    let difference = number(a).wrapping_sub(number(b));
+    [(difference >> 64) as u32, (difference >> 32) as u32, difference as u32]
+}
+
 /// Periods that a chain has fallen at a time: whole ones, and a fraction in units of 2^-32.
 #[must_use]
 pub fn field_fallen(rate: u32, time: FieldTime) -> [u32; 2] {
-    let units = u128::from(u64::from(time.seconds) << 32 | u64::from(time.fraction));
-    // In units of 2^-61 periods.
-    let fallen = ((u128::from(rate) * units) >> 29) as u64;
-    let fallen = if time.is_before == 1 { fallen.wrapping_neg() } else { fallen };
-    [(fallen >> 32) as u32, fallen as u32]
+    let [_, whole, fraction] = field_moved(rate, 29, time);
+    [whole, fraction]
 }
 
 #[cfg(test)]

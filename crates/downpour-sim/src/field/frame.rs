@@ -109,6 +109,26 @@ pub struct FieldFrame {
     pub radius: f32,
 }
 
+impl FieldFrame {
+    /// A picture of a time in seconds, of which nothing is searched for yet.
+    #[must_use]
+    pub fn of_view(view: &View, time_s: f64) -> Self {
+        let time = FieldTime::new(time_s);
+        Self {
+            sides: side_rows(view.sides()),
+            swept: side_rows(view.swept_sides()),
+            velocity: view.velocity.as_vec3(),
+            half_shutter: (0.5 * view.shutter_s) as f32,
+            turning: view.turning.as_vec3(),
+            nearest: view.near as f32,
+            seconds: time.seconds,
+            fraction: time.fraction,
+            is_before: time.is_before,
+            ..Self::zeroed()
+        }
+    }
+}
+
 /// Uniforms of the search for what obstacles stop.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -211,26 +231,16 @@ impl RainField {
             deepest = deepest.min(view.eye.y + f64::from(row.heights[0]));
             classes.push(row);
         }
-        let time = FieldTime::new(time_s);
         let frame = FieldFrame {
-            sides: side_rows(view.sides()),
-            swept: side_rows(view.swept_sides()),
-            velocity: view.velocity.as_vec3(),
-            half_shutter: (0.5 * view.shutter_s) as f32,
-            turning: view.turning.as_vec3(),
-            nearest: view.near as f32,
             per_diameter: (1.0 / shared.angle) as f32,
             beyond: shared.beyond as f32,
-            seconds: time.seconds,
-            fraction: time.fraction,
-            is_before: time.is_before,
             classes: classes.len() as u32,
             columns,
             room,
             begins: self.thinning.as_ref().map_or(0, |thinning| thinning.begins.len() as u32),
             kept_row: self.thinning.as_ref().map_or(0, |thinning| thinning.row_len() as u32),
             radius: shared.radius as f32,
-            ..FieldFrame::zeroed()
+            ..FieldFrame::of_view(view, time_s)
         };
         let now = drift;
         let table = now

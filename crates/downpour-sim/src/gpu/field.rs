@@ -16,8 +16,9 @@ use downpour_shaders::sim::splash::SPLASH_FIND_KERNEL;
 use downpour_wind::UniformWind;
 use glam::{DVec3, Vec3};
 
-use super::GpuSimError;
 use super::list::{BoundKernel, DropListOnGpu, list_buffer};
+use super::{DripSearch, GpuSimError};
+use crate::SimError;
 use crate::drift::Drift;
 use crate::field::frame::{FieldQuery, ShelterFrame};
 use crate::field::{EyeDrop, RainField, check_time};
@@ -78,8 +79,10 @@ pub struct FieldSearch<'a> {
     pub max_room: u32,
     /// A pane before the eye: its unit normal, away from the eye, and its distance, m; drops on the eye's side are not listed.
     pub pane: Option<[f32; 4]>,
-    /// Drops that are known already, at the beginning of the list, such as those that drip.
+    /// Drops that are known already, at the beginning of the list.
     pub known: &'a [EyeDrop],
+    /// Points whose drops are searched for as well.
+    pub drips: Option<DripSearch<'a>>,
     /// Splashes that are searched for as well, where there are obstacles, whose triangles are numbered by their places in the list.
     pub splashes: Option<&'a SplashOptions>,
     /// Rebounds whose droplets are searched for as well, where there are obstacles, numbered as for splashes.
@@ -143,6 +146,8 @@ pub struct FieldPass<'a> {
     splashes: Vec<(Search<'a>, wgpu::BindGroup, [u32; 3])>,
     /// Of the search for droplets: a kernel for each stage, or none.
     bounces: Vec<BoundKernel<'a>>,
+    /// The search for drops that drip.
+    drips: Option<BoundKernel<'a>>,
     list: DropListOnGpu,
     resolved: Resolved,
     columns: u32,
@@ -197,13 +202,13 @@ impl FieldPipeline {
     ///
     /// # Errors
     /// As [`RainField::visible`]; or what the GPU says.
-    pub fn prepare(
-        &self,
+    pub fn prepare<'a>(
+        &'a self,
         buffers: &impl BufferSource,
         (field, on): (&RainField, &mut FieldOnGpu),
         obstacles: &ObstaclesOnGpu<'_>,
-        search: &FieldSearch<'_>,
-    ) -> Result<FieldPass<'_>, GpuSimError> {
+        search: &FieldSearch<'a>,
+    ) -> Result<FieldPass<'a>, GpuSimError> {
         let slices = match (search.splashes, obstacles.bounds) {
             (Some(splashes), Some(bounds)) => {
                 search.view.check()?;
@@ -214,7 +219,10 @@ impl FieldPipeline {
         };
         let crowns = SplashOptions::room(&slices);
         let bounce = search.bounce.filter(|bounce| bounce.fraction > 0.0).zip(obstacles.bounds);
-        let kept_free = crowns + if bounce.is_some() { MAX_DROPLETS } else { 0 };
+        let dripping = search.drips.map(|drips| Ok::<_, SimError>((drips, drips.query()?))).transpose()?;
+        let dripping = dripping.filter(|(_, query)| query.room > 0);
+        let dripped = dripping.map_or(0, |(_, query)| query.room);
+        let kept_free = crowns + dripped + if bounce.is_some() { MAX_DROPLETS } else { 0 };
         let mut query =
             field.query(search.view, search.time_s, search.max_room.saturating_sub(kept_free).max(1))?;
         let least_pixels = query.resolved.least_pixels;
@@ -223,7 +231,7 @@ impl FieldPipeline {
             let (view, obstacles) = ((search.view, least_pixels), (bounds, obstacles.origin));
             bounce.search(field, view, search.time_s, obstacles, drift_of)
         });
-        query.frame.room += crowns + bounce.as_ref().map_or(0, |bounce| bounce.frame.room);
+        query.frame.room += crowns + dripped + bounce.as_ref().map_or(0, |bounce| bounce.frame.room);
         let (known, room) = (search.known.len() as u32, query.frame.room);
         query.frame.first = known;
         query.frame.pane = search.pane.unwrap_or_default();
@@ -239,6 +247,7 @@ impl FieldPipeline {
             (&query, Wants::All),
             to,
         )?;
+        let drips = dripping.map(|(drips, query)| drips.prepare(buffers, &query, &list, search.pane));
         let mut splashes = Vec::new();
         for slice in slices {
             let SplashSearch { slice, view, query, mut frame } = slice;
@@ -274,7 +283,8 @@ impl FieldPipeline {
             _ => Vec::new(),
         };
         on.forget_far_from(search.time_s);
-        Ok(FieldPass { pipeline: self, search: of_picture, splashes, bounces, list, resolved, columns })
+        let (pipeline, search, drips) = (self, of_picture, drips.transpose()?);
+        Ok(FieldPass { pipeline, search, splashes, bounces, drips, list, resolved, columns })
     }
 
     /// Makes ready to find some drops.
@@ -476,7 +486,7 @@ impl Search<'_> {
 
 impl FieldPass<'_> {
     /// The dispatches in stages, one after another: those of a stage write different buffers, but for those of the last, which add
-    /// splashes and droplets to the list.
+    /// splashes, droplets and drops that drip to the list.
     #[must_use]
     pub fn stages(&self) -> [Vec<Dispatch<'_>>; 4] {
         let mut stages: [Vec<Dispatch<'_>>; 4] = Default::default();
@@ -491,6 +501,7 @@ impl FieldPass<'_> {
         for (stage, (kernel, bindings, groups)) in stages.iter_mut().zip(&self.bounces) {
             stage.push(kernel.dispatch(bindings, *groups));
         }
+        stages[3].extend(self.drips.iter().map(|(kernel, bound, groups)| kernel.dispatch(bound, *groups)));
         stages
     }
 

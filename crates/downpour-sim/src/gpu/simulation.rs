@@ -446,11 +446,11 @@ impl GpuSimulation {
     ///
     /// # Errors
     /// [`SimError::OutOfRange`](crate::SimError::OutOfRange) for an invalid camera; [`GpuError`].
-    pub fn list(
-        &self,
+    pub fn list<'a>(
+        &'a self,
         buffers: &impl BufferSource,
-        picture: &StepPicture<'_>,
-    ) -> Result<StepListPass<'_>, GpuSimError> {
+        picture: &StepPicture<'a>,
+    ) -> Result<StepListPass<'a>, GpuSimError> {
         let state = StepBuffers {
             pieces: self.pieces.iter().map(Piece::slots).collect(),
             tables: &self.tables,

@@ -9,7 +9,8 @@ use downpour_shaders::sim::step_list::{STEP_LIST_CLEAR_KERNEL, STEP_LIST_KERNEL,
 
 use super::list::BoundKernel;
 use super::simulation::StepBuffers;
-use super::{CollisionMapOnGpu, DropListOnGpu, GpuSimError};
+use super::{CollisionMapOnGpu, DripSearch, DropListOnGpu, GpuSimError};
+use crate::SimError;
 use crate::field::EyeDrop;
 use crate::impacts::SplashOptions;
 use crate::impacts::splash_frame::SplashFrame;
@@ -30,8 +31,10 @@ pub struct StepPicture<'a> {
     pub map: Option<&'a CollisionMapOnGpu>,
     /// A pane before the eye: its unit normal, away from the eye, and its distance, m; drops on the eye's side are not listed.
     pub pane: Option<[f32; 4]>,
-    /// Drops that are known already, at the beginning of the list, such as those that drip.
+    /// Drops that are known already, at the beginning of the list.
     pub known: &'a [EyeDrop],
+    /// Points whose drops are listed as well.
+    pub drips: Option<DripSearch<'a>>,
     /// Splashes whose crowns are listed as well; `None`: there are none.
     pub splashes: Option<&'a SplashOptions>,
     /// Drops that may have room.
@@ -51,24 +54,27 @@ pub(super) struct StepListKernels {
 #[derive(Debug)]
 pub struct StepListPass<'a> {
     clear: BoundKernel<'a>,
-    /// The drops of each piece, and the crowns of earlier impacts.
+    /// The drops of each piece, the crowns of earlier impacts, and drops that drip.
     finders: Vec<BoundKernel<'a>>,
     list: DropListOnGpu,
 }
 
 impl StepListKernels {
     /// Makes ready to list the drops of a state.
-    pub(super) fn prepare(
-        &self,
+    pub(super) fn prepare<'a>(
+        &'a self,
         buffers: &impl BufferSource,
         plan: &Plan,
         state: &StepBuffers<'_>,
-        picture: &StepPicture<'_>,
-    ) -> Result<StepListPass<'_>, GpuSimError> {
+        picture: &StepPicture<'a>,
+    ) -> Result<StepListPass<'a>, GpuSimError> {
         picture.view.check()?;
         let gpu = buffers.gpu();
         let slots: u32 = state.pieces.iter().map(|piece| piece.count).sum();
-        let room = slots.min(picture.max_room.saturating_sub(picture.known.len() as u32)).max(1);
+        let dripping = picture.drips.map(|drips| Ok::<_, SimError>((drips, drips.query()?))).transpose()?;
+        let dripped = dripping.map_or(0, |(_, query)| query.room);
+        let most = picture.max_room.saturating_sub(picture.known.len() as u32 + dripped);
+        let room = slots.min(most).max(1) + dripped;
         let list = DropListOnGpu::new(buffers, picture.known, room)?;
         let frame = StepListFrame {
             pane: picture.pane.unwrap_or_default(),
@@ -115,6 +121,9 @@ impl StepListKernels {
             let rest = [listed, counted, (14, &of_splashes)];
             let bindings = kernel.bind_at(buffers, bound.into_iter().chain(rest))?;
             finders.push((kernel, bindings, workgroups_for(SPANS as u32 * max_kept)));
+        }
+        if let Some((drips, query)) = dripping.filter(|(_, query)| query.room > 0) {
+            finders.push(drips.prepare(buffers, &query, &list, picture.pane)?);
         }
         let kernel = made_once(&self.clear, || ComputeKernel::new(gpu, &STEP_LIST_CLEAR_KERNEL, &[]))?;
         let frame = buffers.uniform("step list frame", &frame)?;

@@ -83,9 +83,9 @@ pub(super) struct FoundList {
     room: u32,
 }
 
-impl FieldDrops<'_> {
+impl<'a> FieldDrops<'a> {
     /// Makes ready to find the drops.
-    pub(super) fn prepare<'a>(
+    pub(super) fn prepare(
         &mut self,
         pipeline: &'a FieldPipeline,
         buffers: &impl BufferSource,

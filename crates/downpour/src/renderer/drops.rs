@@ -1,6 +1,6 @@
 //! Drops of a frame: a list, or a question to the device that finds them.
 
-use downpour_shaders::sim::field::FIELD_BOUNCED;
+use downpour_shaders::sim::field::{FIELD_BOUNCED, FIELD_SPLASH};
 use downpour_sim::field::{DropKind, EyeDrop, VisibleDrops};
 use downpour_sim::resolved::Resolved;
 
@@ -43,9 +43,11 @@ impl Drops {
         let Found { drops, simulated } = found.unwrap_or(Found { drops: Vec::new(), simulated: 0 });
         let in_world = |(drop, known): (EyeDrop, Option<u32>)| {
             let droplet = known.and_then(|known| shown.droplets.get(known as usize));
-            // The device lists splashes and droplets by what stands in place of a terminal speed; a drop that falls has one.
-            let kind = if drop.speed < FIELD_BOUNCED {
+            // The device lists all others by what stands in place of a terminal speed; a drop that falls has one.
+            let kind = if drop.speed <= FIELD_SPLASH {
                 DropKind::Splash
+            } else if drop.speed < FIELD_BOUNCED {
+                DropKind::Dripped
             } else if drop.speed > FIELD_BOUNCED {
                 DropKind::Falling
             } else {

@@ -10,7 +10,7 @@ use downpour_render::gpu::{BehindGlass, EnvironmentMap, GlassRenderer};
 use downpour_render::picture::PictureOptions;
 use downpour_render::rain::DropMasks;
 use downpour_sim::field::{EyeDrop, RainField};
-use downpour_sim::gpu::{FieldOnGpu, FieldSearch, StepPicture};
+use downpour_sim::gpu::{DripPipeline, DripSearch, DripsOnGpu, FieldOnGpu, FieldSearch, StepPicture};
 use downpour_trace::frame_scene::FrameScene;
 use downpour_trace::gpu::{
     DisplayReadback, FieldDrops, PictureDrops, PictureOnGpu, PictureRenderer, PictureUse,
@@ -21,7 +21,7 @@ use downpour_trace::wet_ground::WetGround;
 use super::RendererError;
 use super::computer::{Painted, PaneView, ThroughGlass};
 use super::drops::Drops;
-use crate::shower::{ShowerRain, ShowerView};
+use crate::shower::{DripView, ShowerRain, ShowerView};
 
 /// A GPU with its pipelines.
 pub(super) struct OnGpu {
@@ -31,6 +31,10 @@ pub(super) struct OnGpu {
     glass: OnceLock<GlassRenderer>,
     /// The rain in closed form of the last frame, and the same on the device.
     field: RefCell<Option<(Arc<RainField>, FieldOnGpu)>>,
+    /// Made for the first points that drip.
+    drip_pipeline: OnceLock<DripPipeline>,
+    /// The points that drip in the last frame with some, on the device.
+    drips: RefCell<Option<DripsOnGpu>>,
     /// True if ripples of puddles stay on the device.
     holds_ripples: bool,
     /// Made for the first puddles.
@@ -41,8 +45,16 @@ impl OnGpu {
     /// `drives_ripples`: a software driver holds the ripples of puddles, too.
     pub(super) fn new(gpu: Gpu, renderer: PictureRenderer, drives_ripples: bool) -> Self {
         let holds_ripples = drives_ripples || !gpu.adapter().is_software();
-        let (glass, puddles) = (OnceLock::new(), OnceLock::new());
-        Self { gpu, renderer, glass, field: RefCell::default(), holds_ripples, puddles }
+        Self {
+            gpu,
+            renderer,
+            glass: OnceLock::new(),
+            field: RefCell::default(),
+            drip_pipeline: OnceLock::new(),
+            drips: RefCell::default(),
+            holds_ripples,
+            puddles: OnceLock::new(),
+        }
     }
 
     /// True if ripples of puddles stay on the device.
@@ -145,6 +157,13 @@ impl OnGpu {
     ) -> Result<PictureOnGpu, RendererError> {
         let known: Vec<EyeDrop> =
             shown.droplets.iter().map(|drop| EyeDrop::new(drop, shown.view.eye)).collect();
+        let mut kept_drips = self.drips.borrow_mut();
+        self.follow_drips(&mut kept_drips, shown)?;
+        let drips = shown.drips.as_ref().zip(kept_drips.as_ref());
+        let drips = drips.map(|(shown_drips, drips)| {
+            let DripView { view, least_pixels, .. } = shown_drips;
+            DripSearch { drips, view, least_pixels: *least_pixels, time_s: shown.time_s }
+        });
         let pane = shown.pane.map(|pane| pane.outward.extend(pane.distance).to_array());
         let max_room = self.renderer.max_drops();
         let draw = |drops: PictureDrops<'_>| {
@@ -156,7 +175,8 @@ impl OnGpu {
                 return Ok(picture.with(|simulation, after_s, map| {
                     let view = &shown.view;
                     let splashes = splashes.as_ref();
-                    let picture = StepPicture { view, after_s, map, pane, known: &known, splashes, max_room };
+                    let known = &known;
+                    let picture = StepPicture { view, after_s, map, pane, known, drips, splashes, max_room };
                     draw(PictureDrops::Stepped(simulation, picture))
                 })?);
             }
@@ -174,11 +194,22 @@ impl OnGpu {
             max_room,
             pane,
             known: &known,
+            drips,
             splashes: splashes.as_ref(),
             bounce: bounce.as_ref(),
         };
         let origin = frame_scene.origin;
         Ok(draw(PictureDrops::Field(FieldDrops { field: rain, on_gpu, search, origin }))?)
+    }
+
+    /// Brings the points that drip in a picture to the device, unless they are there.
+    fn follow_drips(&self, kept: &mut Option<DripsOnGpu>, shown: &ShowerView) -> Result<(), RendererError> {
+        let Some(DripView { drips, .. }) = &shown.drips else { return Ok(()) };
+        if kept.as_ref().is_none_or(|kept| !Arc::ptr_eq(kept.drips(), drips)) {
+            let pipeline = made_once(&self.drip_pipeline, || DripPipeline::new(&self.gpu))?;
+            *kept = pipeline.upload(drips)?;
+        }
+        Ok(())
     }
 
     /// The pipelines of panes.

@@ -13,6 +13,8 @@ use downpour_trace::frame_scene::FrameScene;
 use downpour_weather::{RAINED_S, Weather};
 use glam::DVec3;
 
+#[cfg(feature = "wgpu")]
+use super::DripView;
 use super::ShowerError;
 
 /// Maximum number of drips of a picture.
@@ -80,6 +82,19 @@ impl Dripping {
         let view = View { max_drops: view.max_drops.min(MAX_LISTED), ..*view };
         let obstacles = super::obstacles(frame_scene);
         Ok(self.drips(frame_scene)?.visible(&obstacles, &view, least_pixels, time_s)?)
+    }
+
+    /// The drips that a device finds for a picture; `None` where it cannot.
+    #[cfg(feature = "wgpu")]
+    pub(super) fn of_device(
+        &self,
+        frame_scene: &FrameScene,
+        view: &View,
+        least_pixels: f64,
+    ) -> Result<Option<DripView>, ShowerError> {
+        let view = View { max_drops: view.max_drops.min(MAX_LISTED), ..*view };
+        let drips = Some(self.drips(frame_scene)?).filter(|drips| drips.fits_device());
+        Ok(drips.map(|drips| DripView { drips, view, least_pixels }))
     }
 
     /// The drips near the eye of a frame, in the scene that was seen first.

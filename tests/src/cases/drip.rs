@@ -1,0 +1,220 @@
+//! `shaders/wgsl/sim/drip.wgsl` against `downpour_sim::drips`.
+
+use std::sync::Arc;
+
+use downpour_drop::air::Air;
+use downpour_drop::fall_speed::{FallSpeedModel, TerminalSpeed};
+use downpour_gpu::{Gpu, GpuError};
+use downpour_math::rng::{rng_pcg4d, rng_unit};
+use downpour_shaders::sim::drip::{DRIP, DRIP_FIND_KERNEL};
+use downpour_shaders::sim::field::FIELD_DRIPPED;
+use downpour_sim::drips::row::{DripClock, drip_begin, drip_fall, drip_hanging, drip_number, drip_rest};
+use downpour_sim::drips::{DripOptions, DripPoint, DripRain, Drips, SetDrip};
+use downpour_sim::field::{EyeDrop, FallingDrop};
+use downpour_sim::gpu::{DripPipeline, DripSearch, FieldSearch};
+use downpour_sim::shelter::Obstacles;
+use downpour_sim::view::View;
+use glam::{DVec3, Vec3};
+
+use super::field::{Kind, Setting, kind, listed_by, paired, setting, steady, still};
+use crate::Domain::{LogUniform, Made, Or, Uniform};
+use crate::function::Run;
+use crate::words::{Args, IntoWords as _};
+use crate::{FunctionCase, KernelCase, Tol};
+
+/// A clock: of a rain that goes on, one that ends soon, or one that has ended.
+fn clock(random: [u32; 4]) -> Vec<u32> {
+    let [a, b, c, d] = random.map(rng_unit);
+    let (time, end) = match random[0] % 3 {
+        0 => (0.0, 1.0e30),
+        1 => (0.0, 3.0 * a),
+        _ => (-60.0 * a, -60.0 * a),
+    };
+    [0.01 + 20.0 * b, time, c, end, 60.0 + 40.0 * d].map(f32::to_bits).to_vec()
+}
+
+/// A number of two words with a sign, most of them near a word's end.
+fn number(random: [u32; 4]) -> Vec<u32> {
+    let high = [0, 1, 0x7fff_ffff, 0x8000_0000, 0xffff_ffff, random[2]][(random[0] % 6) as usize];
+    let low = [random[1] % 5, 0u32.wrapping_sub(random[1] % 5), (1 << 30) - 2 + random[1] % 5, random[3]];
+    vec![high, low[(random[0] / 8 % 4) as usize]]
+}
+
+/// A small number with a sign.
+fn near(random: [u32; 4]) -> Vec<u32> {
+    vec![(random[0] % 4001).wrapping_sub(2000)]
+}
+
+fn clock_of(a: &mut Args<'_>) -> DripClock {
+    let [per_s, time, part, end, drain] = a.f32s();
+    DripClock { per_s, time, part, end, drain }
+}
+
+/// The cases.
+#[must_use]
+pub(super) fn functions() -> Vec<FunctionCase> {
+    let exact = Tol::exact("integers throughout");
+    let [terminal, age] = [Or(&Uniform(0.1, 9.5), &[0.0]), Or(&Uniform(-0.1, 4.0), &[0.0])];
+    vec![
+        FunctionCase::new(
+            "drip_reached",
+            &DRIP,
+            &[Made(clock), Uniform(-2.0, 4.0)],
+            Tol::absolute(
+                2.0e-3,
+                "drops: an exponential (2^-21) of up to 2000 of them, and 20 a second for 64 s",
+            ),
+            |a| clock_of(a).drip_reached(a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "drip_time",
+            &DRIP,
+            &[Made(clock), Uniform(-20.0, 40.0)],
+            Tol::relative(
+                2.0e-4,
+                2.0e-4,
+                "seconds: a logarithm (2^-21) times up to 100 s, steep where few drops are left",
+            )
+            .with_outliers(2.0e-3),
+            |a| clock_of(a).drip_time(a.f32()).words(),
+        ),
+        FunctionCase::new("drip_begin", &DRIP, &[Made(number)], exact, |a| {
+            (drip_begin(a.u32s()) as u32).words()
+        }),
+        FunctionCase::new("drip_number", &DRIP, &[Made(number), Made(near)], exact, |a| {
+            drip_number(a.u32s(), a.u32() as i32).words()
+        }),
+        FunctionCase::new(
+            "drip_rest",
+            &DRIP,
+            &[terminal, age],
+            Tol::absolute(3.0e-5, "m and m/s: a logarithm and exponentials (2^-21) times up to 9.5"),
+            |a| drip_rest(a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "drip_fall",
+            &DRIP,
+            &[terminal, Uniform(-9.0, 9.0), Uniform(-9.0, 9.0), Uniform(-9.0, 9.0), age],
+            Tol::absolute(4.0e-5, "m and m/s: as drip_rest, and a wind of up to 9 m/s times an exponential"),
+            |a| {
+                let (terminal, wind) = (a.f32(), Vec3::from(a.f32s()));
+                drip_fall(terminal, wind, a.f32()).map(|v| v.to_array().words()).concat()
+            },
+        ),
+        FunctionCase::new(
+            "drip_hanging",
+            &DRIP,
+            &[LogUniform(1.0e-9, 3.0e-7), LogUniform(1.0e-9, 3.0e-7), Uniform(-0.1, 1.1)],
+            Tol::absolute(1.0e-7, "m: a power of up to 7 mm, of a difference whose last digits count"),
+            |a| drip_hanging(a.f32(), a.f32(), a.f32()).words(),
+        ),
+    ]
+}
+
+/// Points over the floor, of all rates from a drop in minutes to a jet; some set by hand.
+fn points(origin: DVec3, wind: downpour_wind::UniformWind, end_s: f64, on_cpu: &Obstacles<'_>) -> Drips {
+    let place = |k: u32| {
+        let [x, y, z, size] = rng_pcg4d([k, 5, 7, 11]).map(|word| f64::from(rng_unit(word)));
+        (origin + DVec3::new(9.0 * x - 4.5, 1.2 + 2.8 * y, 1.0 - 9.5 * z), size)
+    };
+    let found: Vec<DripPoint> = (0..1500)
+        .map(|k| {
+            let (position, size) = place(k);
+            // At 60 mm/h 0.01 m^2 are some 5 drops a second.
+            let catchment_m2 = if k % 50 == 0 {
+                2.0
+            } else if k == 7 {
+                50.0
+            } else {
+                1.0e-4 + 0.02 * size * size
+            };
+            DripPoint {
+                position,
+                catchment_m2,
+                flow_m: 3.0 * size,
+                radius_m: (k % 3 == 0).then_some(1.0e-3 + 2.0e-3 * size),
+            }
+        })
+        .collect();
+    let set: Vec<SetDrip> = (2000..2200)
+        .map(|k| {
+            let (position, size) = place(k);
+            SetDrip { position, per_s: 0.01 + 12.0 * size, diameter_m: 2.0e-3 + 3.0e-3 * size }
+        })
+        .collect();
+    let rain = DripRain { rate_m_s: 60.0e-3 / 3600.0, begin_s: -3600.0, end_s, storage_m: 0.3e-3 };
+    let speed = TerminalSpeed::new(FallSpeedModel::Beard1976, &Air::standard());
+    let options = DripOptions { seed: 7, temperature_c: 10.0, wind, speed };
+    Drips::new(on_cpu, &found, Some(&rain), &set, &options).expect("points")
+}
+
+/// Drops of points as both sides list them.
+fn dripping_case(gpu: &Gpu, kind: Kind, end_s: f64) -> Result<Run, GpuError> {
+    let Setting { field, view, scene, origin } = setting(kind);
+    let on_cpu = Obstacles { nodes: &scene.nodes, triangles: &scene.triangles, holes: None, origin };
+    let drips = Arc::new(points(origin, (kind.wind)(), end_s, &on_cpu));
+    let least_pixels = 0.3;
+    let of_drips = View { max_drops: 1 << 18, ..view };
+    let on_device = DripPipeline::new(gpu)?.upload(&drips)?.expect("a steady wind");
+    let of_search = DripSearch { drips: &on_device, view: &of_drips, least_pixels, time_s: kind.time_s };
+    let search = FieldSearch {
+        view: &View { far: 3.0, ..view },
+        time_s: kind.time_s,
+        max_room: 1 << 20,
+        pane: kind.pane,
+        known: &[],
+        drips: Some(of_search),
+        splashes: None,
+        bounce: None,
+    };
+    let (mut drops, _) = listed_by(gpu, &field, (&scene, false, origin), &search)?;
+    drops.retain(|drop| drop.speed.to_bits() == FIELD_DRIPPED.to_bits());
+    let outside = |drop: FallingDrop| match kind.pane {
+        Some([x, y, z, distance]) => drop.beyond(Vec3::new(x, y, z), distance, &view),
+        None => Some(drop),
+    };
+    let listed = drips.visible(&on_cpu, &of_drips, least_pixels, kind.time_s).expect("in range");
+    let expected: Vec<EyeDrop> =
+        listed.into_iter().filter_map(outside).map(|drop| EyeDrop::new(&drop, view.eye)).collect();
+    assert!(expected.len() > 400, "{} drops", expected.len());
+    let hang = expected.iter().filter(|drop| drop.velocity == [0.0; 3]).count();
+    assert!((100..expected.len() - 100).contains(&hang), "{hang} of {} hang", expected.len());
+    let finite = |time: f32| time.clamp(-9.0, 9.0);
+    let words = |drop: &EyeDrop| {
+        let [x, y, z] = drop.offset;
+        // In 20 m/s: what it is off matters while the shutter is open.
+        let [u, v, w] = drop.velocity.map(|speed| speed * 0.05);
+        let [begin, end] = drop.present.map(finite);
+        [1.0, x, y, z, u, v, w, drop.diameter * 10.0, begin, end].map(f32::to_bits)
+    };
+    Ok(paired(&expected, &drops, words))
+}
+
+/// The cases.
+#[must_use]
+pub(super) fn kernels() -> Vec<KernelCase> {
+    let of = |name, wander: f64, run: fn(&Gpu) -> Result<Run, GpuError>| {
+        let tol = Tol::absolute(wander, "meters, seconds and 20 m/s; drops at an edge of the picture");
+        KernelCase::new(name, &DRIP_FIND_KERNEL, tol.with_outliers(2.0e-3), run)
+    };
+    const FOREVER: f64 = f64::INFINITY;
+    vec![
+        of("main_drip_find: steady wind", 2.0e-5, |gpu| {
+            dripping_case(gpu, kind(steady, 7.125, 1.0 / 60.0), FOREVER)
+        }),
+        of("main_drip_find: still air, far away and late", 2.0e-5, |gpu| {
+            dripping_case(gpu, Kind { far: true, ..kind(still, 987_654.321, 0.02) }, FOREVER)
+        }),
+        of("main_drip_find: frozen, before time 0", 2.0e-5, |gpu| {
+            dripping_case(gpu, kind(steady, -300.5, 0.0), FOREVER)
+        }),
+        // Times are logarithms, of which a device has 2^-21, times up to 100 s.
+        of("main_drip_find: a minute after the rain, behind a pane", 5.0e-4, |gpu| {
+            let pane = Some([0.0, 0.6, -0.8, 0.5]);
+            dripping_case(gpu, Kind { pane, ..kind(steady, 3.3, 1.0 / 60.0) }, -56.7)
+        }),
+        of("main_drip_find: as the rain ends, a long exposure", 5.0e-4, |gpu| {
+            dripping_case(gpu, kind(steady, 3.3, 0.25), 3.25)
+        }),
+    ]
+}
