@@ -17,7 +17,7 @@ struct DripRow {
     due: vec3u,
     // Drops per second, in units of 2^-shift.
     units: u32,
-    // Drops that have left when the rain ends, as `due`.
+    // Drops that will ever have left, as `due`, where the rain ends.
     left: vec3u,
     shift: u32,
     // Key of its random numbers.
@@ -58,8 +58,7 @@ struct DripFrame {
 struct DripClock {
     // Drops per second while it rains.
     per_s: f32,
-    // Time, s from that of the picture, from which drops are counted, and fraction of a drop that is counted already.
-    time: f32,
+    // Number of drops at the time of the picture; if the rain ends before, of all that will ever have left.
     part: f32,
     // End of the rain, s from the time of the picture.
     end: f32,
@@ -83,25 +82,44 @@ struct DripFall {
     velocity: vec3f,
 }
 
+// Number of drops that leave a point after the rain.
+fn drip_store(clock: DripClock) -> f32 {
+    return clock.drain * clock.per_s;
+}
+
+// Number of drops that will have left a point in the end.
+fn drip_total(clock: DripClock) -> f32 {
+    if clock.end < 0.0 {
+        return clock.part;
+    }
+    return clock.part + clock.end * clock.per_s + drip_store(clock);
+}
+
 // Number of drops that have left a point at a time, s.
 fn drip_reached(clock: DripClock, time: f32) -> f32 {
-    let rained = (min(time, clock.end) - clock.time) * clock.per_s;
-    let after = max(time - clock.end, 0.0);
-    return clock.part + rained + (1.0 - exp(-after / clock.drain)) * (clock.drain * clock.per_s);
+    if time > clock.end {
+        return drip_total(clock) - drip_store(clock) * exp((clock.end - time) / clock.drain);
+    }
+    if clock.end < 0.0 {
+        return clock.part - drip_store(clock) + (time - clock.end) * clock.per_s;
+    }
+    return clock.part + time * clock.per_s;
 }
 
 // Time of a number of drops, s; FIELD_ALWAYS for more than there will be.
 fn drip_time(clock: DripClock, drops: f32) -> f32 {
-    let rest = drops - clock.part;
-    let steady = clock.time + rest / clock.per_s;
-    if steady <= clock.end {
-        return steady;
-    }
-    let left = (rest - (clock.end - clock.time) * clock.per_s) / (clock.drain * clock.per_s);
-    if left >= 1.0 {
+    let rest = drip_total(clock) - drops;
+    if rest <= 0.0 {
         return FIELD_ALWAYS;
     }
-    return clock.end - clock.drain * log(1.0 - left);
+    let store = drip_store(clock);
+    if rest < store {
+        return clock.end - clock.drain * log(rest / store);
+    }
+    if clock.end < 0.0 {
+        return clock.end - (rest - store) / clock.per_s;
+    }
+    return (drops - clock.part) / clock.per_s;
 }
 
 // Distance and speed of a drop of a terminal speed that has fallen from rest for a time, m and m/s.
@@ -163,7 +181,8 @@ fn drip_largest(row: DripRow) -> f32 {
     return select(row.diameter, drip_hanging(row.hanging, 0.0, 1.0), row.hanging > 0.0);
 }
 
-// A point with the number of its drops at the time of the picture, or at the end of the rain before.
+// A point with the number of its drops at the time of the picture or, where the rain ends before, of all of them: there the last ones,
+// which are far apart in time, are told best.
 fn drip_point(index: u32) -> DripPoint {
     let row = drip_rows[index];
     // Exact: a power of two.
@@ -176,7 +195,7 @@ fn drip_point(index: u32) -> DripPoint {
         count = field_difference(moved, row.due);
     }
     let part = f32(count.z >> 8u) * (FIELD_FRACTION_STEP * 256.0);
-    let clock = DripClock(per_s, min(end, 0.0), part, end, select(1.0, row.drain, ends));
+    let clock = DripClock(per_s, part, end, select(1.0, row.drain, ends));
     return DripPoint(row, clock, count.xy, drip_begin(count.xy));
 }
 
@@ -256,11 +275,9 @@ fn drip_falls(point: DripPoint, drop: i32) {
 fn drip_hangs(point: DripPoint) {
     let row = point.row;
     let half_time = field_frame.half_shutter;
+    // It has left before the exposure, unless it is the first of all.
     var drop = drip_first(point, -half_time);
     var since = -FIELD_ALWAYS;
-    if drop > point.begin {
-        since = drip_leaves(point, drop - 1);
-    }
     loop {
         let leaves = drip_leaves(point, drop);
         // Before its first drop an edge becomes wet.

@@ -174,7 +174,9 @@ impl Emitter {
             longest: self.longest_s as f32,
             due: words(self.phase - self.clock.count_in_rain(0.0)),
             units: self.clock.rate.units,
-            left: words(end.map_or(0.0, |[count, _]| count - self.phase)),
+            left: words(
+                end.map_or(0.0, |[count, drain_s]| count + drain_s * self.clock.per_s() - self.phase),
+            ),
             shift: self.clock.rate.shift,
             key: self.key,
             diameter: self.diameter as f32,
@@ -266,8 +268,9 @@ impl Emitter {
 
     /// Adds the drops that hang at some time of an exposure.
     fn list_hanging(&self, time_s: f64, half: f64, drops: &mut Vec<FallingDrop>) {
+        // It has left before the exposure, unless it is the first of all.
         let first = *self.leaving(time_s - half, time_s + half).start();
-        let mut since = if first > 0 { self.leaves(first - 1) } else { f64::NEG_INFINITY };
+        let mut since = f64::NEG_INFINITY;
         for drop in first.. {
             let leaves = self.leaves(drop);
             if leaves > time_s - half {

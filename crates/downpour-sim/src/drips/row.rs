@@ -25,7 +25,7 @@ pub struct DripRow {
     pub due: [u32; 3],
     /// Drops per second, in units of 2^-shift.
     pub units: u32,
-    /// Drops that have left when the rain ends, as `due`.
+    /// Drops that will ever have left, as `due`, where the rain ends.
     pub left: [u32; 3],
     /// See `units`.
     pub shift: u32,
@@ -72,9 +72,7 @@ pub struct DripFrame {
 pub struct DripClock {
     /// Drops per second while it rains.
     pub per_s: f32,
-    /// Time, s from that of the picture, from which drops are counted.
-    pub time: f32,
-    /// Fraction of a drop that is counted already.
+    /// Number of drops at the time of the picture; if the rain ends before, of all that will ever have left.
     pub part: f32,
     /// End of the rain, s from the time of the picture.
     pub end: f32,
@@ -83,24 +81,48 @@ pub struct DripClock {
 }
 
 impl DripClock {
+    /// Number of drops that leave the point after the rain.
+    #[must_use]
+    pub fn drip_store(&self) -> f32 {
+        self.drain * self.per_s
+    }
+
+    /// Number of drops that will have left the point in the end.
+    #[must_use]
+    pub fn drip_total(&self) -> f32 {
+        if self.end < 0.0 {
+            return self.part;
+        }
+        self.part + self.end * self.per_s + self.drip_store()
+    }
+
     /// Number of drops that have left at a time, s.
     #[must_use]
     pub fn drip_reached(&self, time: f32) -> f32 {
-        let rained = (time.min(self.end) - self.time) * self.per_s;
-        let after = (time - self.end).max(0.0);
-        self.part + rained + (1.0 - ops::exp(-after / self.drain)) * (self.drain * self.per_s)
+        if time > self.end {
+            return self.drip_total() - self.drip_store() * ops::exp((self.end - time) / self.drain);
+        }
+        if self.end < 0.0 {
+            return self.part - self.drip_store() + (time - self.end) * self.per_s;
+        }
+        self.part + time * self.per_s
     }
 
     /// Time of a number of drops, s; `FIELD_ALWAYS` for more than there will be.
     #[must_use]
     pub fn drip_time(&self, drops: f32) -> f32 {
-        let rest = drops - self.part;
-        let steady = self.time + rest / self.per_s;
-        if steady <= self.end {
-            return steady;
+        let rest = self.drip_total() - drops;
+        if rest <= 0.0 {
+            return FIELD_ALWAYS;
         }
-        let left = (rest - (self.end - self.time) * self.per_s) / (self.drain * self.per_s);
-        if left >= 1.0 { FIELD_ALWAYS } else { self.end - self.drain * ops::ln(1.0 - left) }
+        let store = self.drip_store();
+        if rest < store {
+            return self.end - self.drain * ops::ln(rest / store);
+        }
+        if self.end < 0.0 {
+            return self.end - (rest - store) / self.per_s;
+        }
+        (drops - self.part) / self.per_s
     }
 }
 
@@ -185,15 +207,21 @@ mod tests {
         }
     }
 
-    /// 2 drops a second up to a second after the picture, then 80 s of them by decay.
+    /// 2 drops a second up to a second after the picture or 20 s before it, then 160 of them by decay.
     #[test]
     fn times_are_the_inverse_of_numbers() {
-        let clock = DripClock { per_s: 2.0, time: 0.0, part: 0.25, end: 1.0, drain: 80.0 };
-        assert!((clock.drip_reached(0.5) - 1.25).abs() < 1.0e-6);
-        assert!((clock.drip_reached(1.0e5) - (2.25 + 160.0)).abs() < 1.0e-4);
-        for drops in [0.3, 2.0, 3.0, 50.0, 150.0] {
-            assert!((clock.drip_reached(clock.drip_time(drops)) - drops).abs() < 1.0e-4, "{drops}");
+        for (end, part, at_end) in [(1.0f32, 0.25f32, 2.25f32), (-20.0, 0.25, -159.75)] {
+            let clock = DripClock { per_s: 2.0, part, end, drain: 80.0 };
+            assert!((clock.drip_reached(end) - at_end).abs() < 1.0e-4);
+            assert!((clock.drip_reached(end - 0.5) - (at_end - 1.0)).abs() < 1.0e-4);
+            let expected = at_end + 160.0 * (1.0 - ops::exp(-1.0));
+            assert!((clock.drip_reached(end + 80.0) - expected).abs() < 1.0e-4);
+            assert!((clock.drip_reached(1.0e5) - (at_end + 160.0)).abs() < 1.0e-4);
+            for more in [-3.0, -0.5, 0.0, 1.0, 50.0, 150.0, 159.0] {
+                let drops = at_end + more;
+                assert!((clock.drip_reached(clock.drip_time(drops)) - drops).abs() < 1.0e-4, "{drops}");
+            }
+            assert_eq!(clock.drip_time(at_end + 160.5), FIELD_ALWAYS);
         }
-        assert_eq!(clock.drip_time(163.0), FIELD_ALWAYS);
     }
 }
