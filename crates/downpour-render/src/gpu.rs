@@ -1,5 +1,6 @@
 //! Pictures on a GPU: the same rays and the same drops as on the CPU, from the same buffers.
 
+mod added_light;
 mod drop_light;
 mod drops;
 mod glass;
@@ -20,6 +21,7 @@ pub(crate) mod tiles;
 pub mod tiles;
 mod tone;
 
+pub use added_light::{AddedLightPass, AddedLightPipeline};
 pub use drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
 pub use glass::{BehindGlass, EnvironmentMap, GlassRenderer};
 pub use glow::{GlowPass, GlowPipeline};

@@ -208,6 +208,15 @@ pub fn compose_pixel(plate: [f32; 4], rain: [f32; 4]) -> [f32; 4] {
     [r, g, b, plate[3]]
 }
 
+/// The rain of a picture (radiance and transmittance) with all that is seen of another picture of the same scene in other light: its plate
+/// through its own rain, and its glow. Twin of the function of this name in `shaders/wgsl/render/compose.wgsl`.
+#[must_use]
+pub fn compose_lit(rain: [f32; 4], plate: [f32; 4], other: [f32; 4], glow: [f32; 3]) -> [f32; 4] {
+    let seen = compose_pixel(plate, other);
+    let [r, g, b] = std::array::from_fn(|k| rain[k] + seen[k] + glow[k]);
+    [r, g, b, rain[3]]
+}
+
 /// Runs a pass and notes its time.
 pub fn timed<T>(passes: &mut Vec<(&'static str, f64)>, name: &'static str, work: impl FnOnce() -> T) -> T {
     let start = Instant::now();

@@ -270,18 +270,21 @@ fn what_is_kept_follows_on_a_gpu() {
     what_moves_is_where_it_would_be_alone(&device, &[1]);
 }
 
-/// Pixels for a display are those of the frame of the time.
+/// Pixels for a display are those of the frame of the time, in lightning as well.
 #[test]
 fn a_frame_for_a_display_is_the_frame() {
     let folder = folder();
-    let glow = changed(&[("[camera]", "[glow]\nglare = 0.05\n[camera]")]);
+    let parts =
+        "[glow]\nglare = 0.05\n[lightning]\nper_minute = 30\nseed = 14\ndistance_m = [500, 1500]\n[camera]";
+    let glow = changed(&[("[camera]", parts)]);
     let mut devices = vec![Device::cpu()];
     #[cfg(feature = "wgpu")]
     devices.extend(device::gpu(downpour::gpu::LimitSet::Adapter).map(|gpu| Device::gpu(gpu, false)));
     for device in devices {
         let mut display = opened(&folder, &glow, &fast(), device.clone());
         let mut frames = opened(&folder, &glow, &fast(), device);
-        for time_s in [0.5, 0.6] {
+        let flash = (60..6000).map(|k| 0.01 * f64::from(k)).find(|&time_s| frames.is_in_flash(time_s));
+        for time_s in [0.5, 0.6, flash.unwrap()] {
             let (shown, frame) = (display.display(time_s).unwrap(), frames.frame(time_s).unwrap());
             assert_eq!((shown.size, shown.exposure.to_bits()), (frame.size(), frame.exposure.to_bits()));
             assert_eq!(shown.drops_drawn, frame.picture.drawn.len());

@@ -44,6 +44,7 @@ pub const MODULES: &[&Module] = &[
 /// Every kernel of this file.
 pub const KERNELS: &[&Kernel] = &[
     &COMPOSE_KERNEL,
+    &COMPOSE_LIT_KERNEL,
     &STREAK_TABLE_KERNEL,
     &STREAK_RAYS_KERNEL,
     &STREAK_LIGHT_KERNEL,
@@ -597,6 +598,10 @@ pub static TILES_SORT_KERNEL: Kernel =
 
 /// One invocation per pixel.
 pub static COMPOSE_KERNEL: Kernel = Kernel { entry: "main_compose", module: &COMPOSE, workgroup: [8, 8, 1] };
+
+/// One invocation per pixel.
+pub static COMPOSE_LIT_KERNEL: Kernel =
+    Kernel { entry: "main_compose_lit", module: &COMPOSE, workgroup: [8, 8, 1] };
 
 /// One workgroup per ray and class.
 pub static STREAK_TABLE_KERNEL: Kernel =

@@ -9,9 +9,9 @@ use downpour_gpu::{ComputeKernel, Gpu, GpuError};
 use downpour_math::ops;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_render::camera::Viewpoint;
-use downpour_render::gpu::RainPipeline;
+use downpour_render::gpu::{AddedLightPipeline, RainPipeline, TonedLayers};
 use downpour_render::light::LightSource;
-use downpour_render::picture::compose_pixel;
+use downpour_render::picture::{compose_lit, compose_pixel};
 use downpour_render::rain::drops::{drops_sums_distance, drops_sums_shown};
 use downpour_render::rain::layers::{layers_fresnel, layers_refracted};
 use downpour_render::rain::light::{DropLightForm, DropLightOptions};
@@ -35,9 +35,10 @@ use downpour_shaders::render::medium::{
     MEDIUM_SMOOTH_PARTS_KERNEL, MEDIUM_SPREAD, MEDIUM_STREAKS,
 };
 use downpour_shaders::render::rain::{
-    COMPOSE, COMPOSE_KERNEL, DROPS_KERNEL, DROPS_SUM_CLEAR_KERNEL, DROPS_SUM_FINISH_KERNEL,
-    DROPS_SUM_SCALE_KERNEL, DROPS_SUM_THIN_KERNEL, DROPS_SUM_WIDE_KERNEL, DROPS_UNLISTED_KERNEL, STREAK,
-    STREAK_CELL, STREAK_LIGHT_KERNEL, STREAK_RAYS, STREAK_RAYS_KERNEL, STREAK_SPAN, STREAK_TABLE_KERNEL,
+    COMPOSE, COMPOSE_KERNEL, COMPOSE_LIT_KERNEL, DROPS_KERNEL, DROPS_SUM_CLEAR_KERNEL,
+    DROPS_SUM_FINISH_KERNEL, DROPS_SUM_SCALE_KERNEL, DROPS_SUM_THIN_KERNEL, DROPS_SUM_WIDE_KERNEL,
+    DROPS_UNLISTED_KERNEL, STREAK, STREAK_CELL, STREAK_LIGHT_KERNEL, STREAK_RAYS, STREAK_RAYS_KERNEL,
+    STREAK_SPAN, STREAK_TABLE_KERNEL,
 };
 use downpour_shaders::render::scene::{TRACE_KERNEL, TRACE_SEEN_KERNEL};
 use downpour_sim::field::{DropKind, FallingDrop};
@@ -471,6 +472,28 @@ fn compose_case(gpu: &Gpu) -> Result<Run, GpuError> {
     Ok(Run::of_pixels(width, &composed, &gpu.read(&target)?))
 }
 
+/// Other light added to a picture, with glow or without.
+fn compose_lit_case(gpu: &Gpu, glows: bool) -> Result<Run, GpuError> {
+    let [width, height] = [29, 19];
+    let random = |seed| {
+        let pixel = move |i| rng_draw([seed, 7], i, 0, 0).map(rng_unit);
+        (0..width * height).map(pixel).collect::<Vec<_>>()
+    };
+    let [rain, plate, other, glow] = [1, 2, 3, 4].map(random);
+    let of_glow = |glow: [f32; 4]| if glows { [glow[0], glow[1], glow[2]] } else { [0.0; 3] };
+    let expected: Vec<_> =
+        (0..rain.len()).map(|k| compose_lit(rain[k], plate[k], other[k], of_glow(glow[k]))).collect();
+    let [rain, plate, other, glow] =
+        [&rain, &plate, &other, &glow].map(|pixels| gpu.storage_buffer("pixels", pixels));
+    let (rain, plate, other, glow) = (rain?, plate?, other?, glow?);
+    let light =
+        TonedLayers { size: [width, height], plate: &plate, rain: &other, glow: glows.then_some(&glow) };
+    let pipeline = AddedLightPipeline::new(gpu)?;
+    let pass = pipeline.prepare(gpu, light, &rain)?;
+    gpu.submit(&[pass.dispatch()])?;
+    Ok(Run::of_pixels(width, &expected, &gpu.read(&rain)?))
+}
+
 const CAPTURED: Tol = Tol::relative(
     2.0e-3,
     2.0e-3,
@@ -597,6 +620,13 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &[Uniform(0.0, 4.0); 8],
             Tol::relative(2.0e-7, 0.0, "a product and a sum of positive numbers, which may be fused"),
             |a| compose_pixel(a.f32s(), a.f32s()).words(),
+        ),
+        FunctionCase::new(
+            "compose_lit",
+            &COMPOSE,
+            &[Uniform(0.0, 4.0); 15],
+            Tol::relative(3.0e-7, 0.0, "a product and three sums of positive numbers, which may be fused"),
+            |a| compose_lit(a.f32s(), a.f32s(), a.f32s(), a.f32s()).words(),
         ),
         FunctionCase::new(
             "medium_fog_depth",
@@ -830,6 +860,18 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             tol: Tol::relative(2.0e-7, 0.0, "a product and a sum of positive numbers, which may be fused"),
             run: compose_case,
         },
+        KernelCase::new(
+            "main_compose_lit: with glow",
+            &COMPOSE_LIT_KERNEL,
+            Tol::relative(3.0e-7, 0.0, "a product and three sums of positive numbers, which may be fused"),
+            |gpu| compose_lit_case(gpu, true),
+        ),
+        KernelCase::new(
+            "main_compose_lit: without",
+            &COMPOSE_LIT_KERNEL,
+            Tol::relative(3.0e-7, 0.0, "a product and two sums of positive numbers, which may be fused"),
+            |gpu| compose_lit_case(gpu, false),
+        ),
         medium("main_medium_open: a grid", &MEDIUM_OPEN_KERNEL, |gpu| {
             rain_case(gpu, LEVEL, RefractionForm::Direction, Exposure::default(), Part::Open)
         }),

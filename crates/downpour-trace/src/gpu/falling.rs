@@ -112,6 +112,11 @@ impl FoundList {
         Self { counts, drops, places: list.places(), known: list.known(), room: list.room() }
     }
 
+    /// From now on no more is asked than how many drops were looked at.
+    pub(super) fn count_only(&mut self) {
+        self.drops = None;
+    }
+
     /// How many there are.
     pub(super) fn counts(&self) -> &wgpu::Buffer {
         &self.counts

@@ -18,8 +18,8 @@ use rayon::prelude::*;
 use downpour_render::RenderError;
 use downpour_render::camera::{Camera, Viewpoint};
 use downpour_render::gpu::{
-    BehindGlass, EnvironmentMap, FallingOnGpu, GlowPipeline, KeptLight, RainOnGpu, RainPipeline,
-    RefinePipeline, TonePipeline, TonedLayers,
+    AddedLightPipeline, BehindGlass, EnvironmentMap, FallingOnGpu, GlowPipeline, KeptLight, RainOnGpu,
+    RainPipeline, RefinePipeline, TonePipeline, TonedLayers,
 };
 use downpour_render::picture::{DeviceUse, Picture, PictureOptions};
 use downpour_render::rain::{DropMasks, Rain};
@@ -111,6 +111,7 @@ pub struct PictureRenderer {
     temporal: TemporalPipeline,
     running_light: RunningLightPipeline,
     tone: TonePipeline,
+    added_light: AddedLightPipeline,
     fields: FieldPipeline,
     pool: Arc<BufferPool>,
     /// Locked for as long as a picture is drawn with the pool's buffers.
@@ -183,6 +184,7 @@ impl PictureRenderer {
             temporal: TemporalPipeline::new(gpu)?,
             running_light: RunningLightPipeline::new(gpu)?,
             tone: TonePipeline::new(gpu)?,
+            added_light: AddedLightPipeline::new(gpu)?,
             fields: FieldPipeline::new(gpu)?,
             // A picture may be read after the next one is begun.
             pool: Arc::new(
@@ -447,8 +449,45 @@ impl PictureRenderer {
             times,
             ticks,
             device,
+            added: Vec::new(),
             passes: Vec::new(),
         })
+    }
+
+    /// Adds a picture of the same scene in other light to one that is displayed: to all that is seen of it. Its drops are not counted.
+    ///
+    /// # Errors
+    /// Returns the error of the GPU.
+    pub fn add_light(&self, picture: &mut PictureOnGpu, light: PictureOnGpu) -> Result<(), GpuError> {
+        let _drawing = self.drawing.lock().unwrap_or_else(PoisonError::into_inner);
+        let pass = self.added_light.prepare(&*self.pool, light.toned(), &picture.layer)?;
+        self.gpu.submit(&[pass.dispatch()])?;
+        let PictureOnGpu { times, ticks, device, mut layers, .. } = light;
+        // Read with the picture.
+        layers.retain(|(label, _)| *label != TICKS);
+        give_back(&self.pool, layers);
+        picture.layers.extend(ticks.iter().map(|ticks| (TICKS, ticks.clone())));
+        picture.added.push(AddedTimes { times, ticks });
+        picture.device.bytes_uploaded += device.bytes_uploaded;
+        picture.device.buffers_made += device.buffers_made;
+        Ok(())
+    }
+
+    /// Makes the pixels of a picture for a display.
+    ///
+    /// # Errors
+    /// Returns the error of the GPU.
+    pub fn show(&self, picture: &mut PictureOnGpu, tone: &Tone) -> Result<(), GpuError> {
+        let _drawing = self.drawing.lock().unwrap_or_else(PoisonError::into_inner);
+        let toned = self.tone.prepare(&*self.pool, picture.toned(), tone)?;
+        self.gpu.submit(&[toned.dispatch()])?;
+        let pixels = toned.target().clone();
+        picture.layers.push(("display picture", pixels.clone()));
+        picture.pixels = Some(pixels);
+        if let Some(found) = &mut picture.found {
+            found.count_only();
+        }
+        Ok(())
     }
 
     /// The frame of a picture that the device can trace.
@@ -646,8 +685,17 @@ pub struct PictureOnGpu {
     times: FrameTimes,
     ticks: Option<wgpu::Buffer>,
     device: DeviceUse,
+    /// Times of pictures in other light that were added to it.
+    added: Vec<AddedTimes>,
     /// Further passes after those that drew it, with the time of each in ms.
     pub passes: Vec<(&'static str, f64)>,
+}
+
+/// Times of the passes of a picture that was added to another.
+#[derive(Debug)]
+struct AddedTimes {
+    times: FrameTimes,
+    ticks: Option<wgpu::Buffer>,
 }
 
 /// A picture on its way from the device.
@@ -668,6 +716,12 @@ pub struct PictureReadback {
 }
 
 impl PictureOnGpu {
+    /// Its layers, for a display.
+    fn toned(&self) -> TonedLayers<'_> {
+        let size = self.rain.frame.camera.size();
+        TonedLayers { size, plate: &self.clean, rain: &self.layer, glow: self.glow.as_ref() }
+    }
+
     /// Its layers, for a pane of glass that it is seen through.
     #[must_use]
     pub fn behind_glass(&self) -> BehindGlass<'_> {
@@ -715,6 +769,7 @@ impl PictureOnGpu {
         let Some(pixels) = &self.pixels else { return Ok(None) };
         let mut buffers = vec![pixels];
         buffers.extend(&self.ticks);
+        buffers.extend(self.added.iter().filter_map(|added| added.ticks.as_ref()));
         let distances = (&self.distances, self.count);
         let read = begin_read(&self.readbacks, &self.gpu, distances, &buffers, self.found.as_ref())?;
         give_back(&self.pool, self.layers);
@@ -727,6 +782,7 @@ impl PictureOnGpu {
             read,
             times: self.times,
             has_ticks: self.ticks.is_some(),
+            added: self.added.into_iter().map(|added| (added.times, added.ticks.is_some())).collect(),
             device: self.device,
         }))
     }
@@ -806,6 +862,8 @@ pub struct DisplayReadback {
     read: Readback,
     times: FrameTimes,
     has_ticks: bool,
+    /// Times of pictures that were added, and whether these are read with it.
+    added: Vec<(FrameTimes, bool)>,
     device: DeviceUse,
 }
 
@@ -834,17 +892,26 @@ impl DisplayReadback {
     /// # Errors
     /// As [`PictureReadback::finish`].
     pub fn finish(self) -> Result<DisplayPicture, GpuPictureError> {
-        let Self { size, pace, samples, count, found, mut read, times, has_ticks, device } = self;
+        let Self { size, pace, samples, count, found, mut read, times, has_ticks, added, device } = self;
         read.wait()?;
         let mut distances = read.take::<f32>(0)?;
         distances.truncate(count);
+        let pixels = read.take(1)?;
+        let mut part = 2;
+        let mut ticks = |is_there: bool| {
+            let ticks = if is_there { read.take(part)? } else { Vec::new() };
+            part += usize::from(is_there);
+            Ok::<_, GpuError>(ticks)
+        };
+        let mut passes = times.read(&ticks(has_ticks)?);
+        note_pace(&pace, &passes, samples, has_ticks);
+        for (times, has_ticks) in added {
+            passes.push(("flash", times.read(&ticks(has_ticks)?).iter().map(|(_, ms)| ms).sum()));
+        }
         let drops_simulated = match found {
-            Some(found) => found.simulated(&mut read, 2 + usize::from(has_ticks))?,
+            Some(found) => found.simulated(&mut read, part)?,
             None => count as u64,
         };
-        let pixels = read.take(1)?;
-        let passes = times.read(&if has_ticks { read.take(2)? } else { Vec::new() });
-        note_pace(&pace, &passes, samples, has_ticks);
         Ok(DisplayPicture {
             size,
             pixels,

@@ -317,13 +317,13 @@ impl Drawer {
     #[cfg(feature = "wgpu")]
     pub(super) fn display(
         &self,
-        of: downpour_trace::gpu::PictureUse,
-        frame_scene: &FrameScene,
-        drops: &Drops,
-        masks: &DropMasks,
-        options: &PictureOptions,
+        of: PlateUse,
+        tone: &downpour_render::tone::Tone,
+        seen: (&FrameScene, &Drops),
+        drawn: (&DropMasks, &PictureOptions),
+        flashes: &[super::flash::FlashPicture],
     ) -> Result<Option<downpour_trace::gpu::DisplayReadback>, RendererError> {
-        self.on_gpu.as_ref().map_or(Ok(None), |on_gpu| on_gpu.display(of, frame_scene, drops, masks, options))
+        self.on_gpu.as_ref().map_or(Ok(None), |on_gpu| on_gpu.display(of, tone, seen, drawn, flashes))
     }
 
     /// Finds the light of sky and surfaces in a frame of a clip for the frames after it.

@@ -7,7 +7,7 @@ use downpour_render::picture::DeviceUse;
 #[cfg(feature = "wgpu")]
 use downpour_render::tone::Tone;
 #[cfg(feature = "wgpu")]
-use downpour_trace::gpu::{DisplayReadback, PictureUse};
+use downpour_trace::gpu::DisplayReadback;
 
 use super::frame::PendingFrame;
 use super::{Renderer, RendererError};
@@ -54,8 +54,8 @@ enum Pending {
 
 impl Renderer {
     /// Begins the frame of a time in seconds for a display. On a GPU its layers and its drops stay there and its pixels are made there, so
-    /// that it is at hand sooner than a [`Frame`](super::Frame), and the same within 1 of 255. The first frame, frames in a flash of
-    /// lightning, those seen through a pane and all of a CPU are made as [`Renderer::begin_frame`] does.
+    /// that it is at hand sooner than a [`Frame`](super::Frame), and the same within 1 of 255. The first frame, those seen
+    /// through a pane and all of a CPU are made as [`Renderer::begin_frame`] does.
     ///
     /// # Errors
     /// As [`Renderer::frame`].
@@ -63,7 +63,6 @@ impl Renderer {
         #[cfg(feature = "wgpu")]
         if self.drawn > 0
             && self.weather.glass.is_none()
-            && !self.is_in_flash(time_s)
             && let Some(exposure) = self.exposure
             && let Some(pixels) = self.display_of_device(time_s, exposure)?
         {
@@ -94,9 +93,11 @@ impl Renderer {
         let options = self.picture_options(&frame_scene, time_s, medium)?;
         let exposure = exposure * self.weather.exposure_factor(time_s);
         let (curve, edges) = (self.weather.camera.tone, self.weather.camera.edges);
-        let tone = Some(Tone { exposure, curve, edges });
-        let of = PictureUse { plate: self.plate_use(&frame_scene, time_s), tone };
-        let read = self.drawer.display(of, &frame_scene, &drops, &self.masks, &options)?;
+        let tone = Tone { exposure, curve, edges };
+        let of = self.plate_use(&frame_scene, time_s);
+        let flashes = self.flash_pictures(time_s, &drops, told)?;
+        let (seen, drawn) = ((&frame_scene, &drops), (&*self.masks, &options));
+        let read = self.drawer.display(of, &tone, seen, drawn, &flashes)?;
         self.drawn += 1;
         let begin_ms = begin.elapsed().as_secs_f64() * 1.0e3;
         let pixels = |read| Pending::Pixels { read: Box::new(read), time_s, exposure, begin, begin_ms };

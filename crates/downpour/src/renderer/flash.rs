@@ -3,6 +3,7 @@
 //! Light adds up, also over time: what the shutter sees is the picture without flashes, and that of the flashes alone with the
 //! shutter open for as long as they shine. The exposure of pictures is that without flashes.
 
+use downpour_render::picture::PictureOptions;
 use downpour_render::rain::{Exposure, TemporalResponse};
 use downpour_sim::field::{EyeDrop, FallingDrop, VisibleDrops};
 use downpour_trace::frame_scene::FrameScene;
@@ -12,6 +13,13 @@ use downpour_weather::{FlashExposure, Observer};
 use super::computer::Painted;
 use super::drops::Drops;
 use super::{Progress, Renderer, RendererError};
+
+/// A picture in the light of flashes alone, of a part of an exposure.
+pub(super) struct FlashPicture {
+    pub(super) frame_scene: FrameScene,
+    pub(super) drops: Drops,
+    pub(super) options: PictureOptions,
+}
 
 impl Renderer {
     /// True if a flash of lightning shines while the shutter of a frame is open: such a frame is drawn several times, each in the light of
@@ -35,6 +43,19 @@ impl Renderer {
         drops: &Drops,
         told: &mut dyn FnMut(Progress),
     ) -> Result<Vec<Painted>, RendererError> {
+        let draw = |flash: FlashPicture| {
+            self.draw(&flash.frame_scene, &flash.drops, &flash.options, PlateUse::default(), false)
+        };
+        self.flash_pictures(time_s, drops, told)?.into_iter().map(draw).collect()
+    }
+
+    /// The pictures of a time in the light of its flashes alone, of parts of its exposure. `drops` are those of the frame.
+    pub(super) fn flash_pictures(
+        &self,
+        time_s: f64,
+        drops: &Drops,
+        told: &mut dyn FnMut(Progress),
+    ) -> Result<Vec<FlashPicture>, RendererError> {
         let parts = self.flash_parts(time_s);
         if parts.is_empty() {
             return Ok(Vec::new());
@@ -44,14 +65,14 @@ impl Renderer {
         parts.iter().map(|part| self.flash(&frame_scene, time_s, drops, part)).collect()
     }
 
-    /// A part of the exposure in which flashes shine.
+    /// The picture of a part of the exposure in which flashes shine.
     fn flash(
         &self,
         frame_scene: &FrameScene,
         time_s: f64,
         drops: &Drops,
         part: &FlashExposure,
-    ) -> Result<Painted, RendererError> {
+    ) -> Result<FlashPicture, RendererError> {
         let mut frame_scene = frame_scene.in_flash(&self.weather, time_s, &part.lights);
         if let Some(water) = &self.water {
             water.lay(&mut frame_scene)?;
@@ -78,7 +99,7 @@ impl Renderer {
             response: TemporalResponse::Shutter,
             ..options.rain.exposure
         };
-        self.draw(&frame_scene, &drops, &options, PlateUse::default(), false)
+        Ok(FlashPicture { frame_scene, drops, options })
     }
 }
 

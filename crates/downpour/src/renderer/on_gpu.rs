@@ -9,6 +9,7 @@ use downpour_lattice::gpu::puddle::PuddleKernels;
 use downpour_render::gpu::{BehindGlass, EnvironmentMap, GlassRenderer};
 use downpour_render::picture::PictureOptions;
 use downpour_render::rain::DropMasks;
+use downpour_render::tone::Tone;
 use downpour_sim::field::{EyeDrop, RainField};
 use downpour_sim::gpu::{DripPipeline, DripSearch, DripsOnGpu, FieldOnGpu, FieldSearch, StepPicture};
 use downpour_trace::frame_scene::FrameScene;
@@ -21,6 +22,7 @@ use downpour_trace::wet_ground::WetGround;
 use super::RendererError;
 use super::computer::{Painted, PaneView, ThroughGlass};
 use super::drops::Drops;
+use super::flash::FlashPicture;
 use crate::shower::{DripView, ShowerRain, ShowerView};
 
 /// A GPU with its pipelines.
@@ -82,16 +84,26 @@ impl OnGpu {
         self.renderer.max_drops()
     }
 
-    /// Draws a frame for a display.
+    /// Draws a frame for a display, with flashes of lightning if there are any.
     pub(super) fn display(
         &self,
-        of: PictureUse,
-        frame_scene: &FrameScene,
-        drops: &Drops,
-        masks: &DropMasks,
-        options: &PictureOptions,
+        of: PlateUse,
+        tone: &Tone,
+        (frame_scene, drops): (&FrameScene, &Drops),
+        (masks, options): (&DropMasks, &PictureOptions),
+        flashes: &[FlashPicture],
     ) -> Result<Option<DisplayReadback>, RendererError> {
-        Ok(self.drawn(of, frame_scene, drops, masks, options)?.begin_display()?)
+        let alone = flashes.is_empty();
+        let of_frame = PictureUse { plate: of, tone: alone.then_some(*tone) };
+        let mut picture = self.drawn(of_frame, frame_scene, drops, masks, options)?;
+        for FlashPicture { frame_scene, drops, options } in flashes {
+            let light = self.drawn(PictureUse::default(), frame_scene, drops, masks, options)?;
+            self.renderer.add_light(&mut picture, light)?;
+        }
+        if !alone {
+            self.renderer.show(&mut picture, tone)?;
+        }
+        Ok(picture.begin_display()?)
     }
 
     fn drawn(
