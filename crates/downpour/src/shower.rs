@@ -413,7 +413,10 @@ impl Shower {
                 let view = View { least_pixels, ..frame_scene.view()? };
                 let picture = picture.later(time_s - shown.time_s);
                 let rain = ShowerRain::Stepped { picture, splashes: *splashes };
-                let drips = shown.drips.clone().map(|drips| DripView { view, ..drips });
+                let drips = shown.drips.clone().map(|drips| {
+                    let max_drops = drips.view.max_drops;
+                    DripView { view: View { max_drops, ..view }, ..drips }
+                });
                 Ok(ShowerView { rain, view, time_s, drips, ..shown.clone() })
             }
             ShowerRain::Closed { field, max_room, .. } => {

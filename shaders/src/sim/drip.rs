@@ -15,7 +15,7 @@ shared_constants! {
     /// Constants of points that drip.
     DRIP_CONSTANTS at "sim/drip_constants" {
         /// Invocations that share the drops of a point.
-        DRIP_LANES: u32 = 4;
+        DRIP_LANES: u32 = 32;
         /// Part of a drop's diameter by which its center hangs below the edge.
         DRIP_HANGS: f32 = 0.4;
         /// Jitter of the time of a drop, in intervals: half of it before, half after.

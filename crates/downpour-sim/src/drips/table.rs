@@ -9,7 +9,7 @@ use crate::view::{View, within};
 /// Edge of a cell, m.
 const CELL_M: f64 = 4.0;
 
-/// Speed of a falling drop in a picture, m/s, of which no drop has more.
+/// Upper bound of the speed of a falling drop, m/s.
 const MAX_FALL_M_S: f64 = 12.0;
 
 /// Rows of the points that drip.
