@@ -105,9 +105,6 @@ pub struct DripOptions {
 pub struct Drips {
     emitters: Vec<Emitter>,
     options: DripOptions,
-    /// End of the rain, s.
-    #[cfg(feature = "wgpu")]
-    end_s: f64,
     /// Number of points without drops: nothing falls, or only into what is at the point.
     left_out: usize,
     /// The points as a device has them, once it has asked.
@@ -150,8 +147,6 @@ impl Drips {
             left_out: wanted - emitters.len(),
             emitters,
             options: options.clone(),
-            #[cfg(feature = "wgpu")]
-            end_s: rain.map_or(f64::INFINITY, |rain| rain.end_s),
             #[cfg(feature = "wgpu")]
             table: OnceLock::new(),
         })

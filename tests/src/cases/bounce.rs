@@ -16,7 +16,7 @@ use downpour_sim::simulation::Bounce;
 use downpour_sim::view::View;
 use glam::Vec3;
 
-use super::field::{Kind, Setting, gusty, kind, listed_by, paired, setting, steady, still};
+use super::field::{Kind, Setting, gusty, kind, listed_by, moving_words, paired, setting, steady, still};
 use crate::Domain::Uniform;
 use crate::function::Run;
 use crate::words::IntoWords as _;
@@ -86,13 +86,7 @@ fn droplets_case(gpu: &Gpu, kind: Kind, bounce: Bounce) -> Result<Run, GpuError>
         droplets.into_iter().filter_map(outside).map(|drop| EyeDrop::new(&drop, view.eye)).collect();
     assert!(expected.len() > 150, "{} droplets", expected.len());
     let finite = |time: f32| if time.abs() < 1.0e3 { time } else { 1.0e3 };
-    let words = |drop: &EyeDrop| {
-        let [x, y, z] = drop.offset;
-        // In 20 m/s: what it is off matters while the shutter is open.
-        let [u, v, w] = drop.velocity.map(|speed| speed * 0.05);
-        let [begin, end] = drop.present.map(finite);
-        [1.0, x, y, z, u, v, w, drop.diameter * 10.0, begin, end].map(f32::to_bits)
-    };
+    let words = |drop: &EyeDrop| moving_words(drop, finite);
     Ok(paired(&expected, &drops, words))
 }
 

@@ -16,7 +16,7 @@ use downpour_sim::shelter::Obstacles;
 use downpour_sim::view::View;
 use glam::{DVec3, Vec3};
 
-use super::field::{Kind, Setting, kind, listed_by, paired, setting, steady, still};
+use super::field::{Kind, Setting, kind, listed_by, moving_words, paired, setting, steady, still};
 use crate::Domain::{LogUniform, Made, Or, Uniform};
 use crate::function::Run;
 use crate::words::{Args, IntoWords as _};
@@ -180,13 +180,7 @@ fn dripping_case(gpu: &Gpu, kind: Kind, end_s: f64) -> Result<Run, GpuError> {
     let hang = expected.iter().filter(|drop| drop.velocity == [0.0; 3]).count();
     assert!((100..expected.len() - 100).contains(&hang), "{hang} of {} hang", expected.len());
     let finite = |time: f32| time.clamp(-9.0, 9.0);
-    let words = |drop: &EyeDrop| {
-        let [x, y, z] = drop.offset;
-        // In 20 m/s: what it is off matters while the shutter is open.
-        let [u, v, w] = drop.velocity.map(|speed| speed * 0.05);
-        let [begin, end] = drop.present.map(finite);
-        [1.0, x, y, z, u, v, w, drop.diameter * 10.0, begin, end].map(f32::to_bits)
-    };
+    let words = |drop: &EyeDrop| moving_words(drop, finite);
     Ok(paired(&expected, &drops, words))
 }
 

@@ -508,6 +508,15 @@ pub(super) fn listed_by(
     Ok((drops, pass.resolved().least_pixels))
 }
 
+/// Words of a drop that moves, for a comparison in meters and seconds, with the times of its presence as `finite` has them.
+pub(super) fn moving_words(drop: &EyeDrop, finite: impl Fn(f32) -> f32) -> [u32; 10] {
+    let [x, y, z] = drop.offset;
+    // In 20 m/s: what it is off matters while the shutter is open.
+    let [u, v, w] = drop.velocity.map(|speed| speed * 0.05);
+    let [begin, end] = drop.present.map(finite);
+    [1.0, x, y, z, u, v, w, drop.diameter * 10.0, begin, end].map(f32::to_bits)
+}
+
 /// Drops by their ids, and in order of time where several have one: a drop that hangs and then falls.
 fn numbered(drops: &[EyeDrop]) -> BTreeMap<(u32, u32, u32), EyeDrop> {
     let mut sorted: Vec<&EyeDrop> = drops.iter().collect();

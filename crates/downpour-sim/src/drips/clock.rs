@@ -81,11 +81,11 @@ impl Clock {
         (time_s - self.start_s) * self.per_s
     }
 
-    /// Number of drops that have left when the rain ends, and the time constant with which the point then runs dry, s; `None` if the rain
-    /// goes on.
+    /// End of the rain, s, number of drops that have left then, and the time constant with which the point then runs dry, s; `None` if the
+    /// rain goes on.
     #[cfg(feature = "wgpu")]
-    pub(super) fn end(&self) -> Option<[f64; 2]> {
-        self.stop_s.is_finite().then(|| [self.count_in_rain(self.stop_s), self.drain_s])
+    pub(super) fn end(&self) -> Option<[f64; 3]> {
+        self.stop_s.is_finite().then(|| [self.stop_s, self.count_in_rain(self.stop_s), self.drain_s])
     }
 
     /// Number of drops, with a fraction, that have left at a time; negative before the first.

@@ -175,7 +175,7 @@ impl Emitter {
             due: words(self.phase - self.clock.count_in_rain(0.0)),
             units: self.clock.rate.units,
             left: words(
-                end.map_or(0.0, |[count, drain_s]| count + drain_s * self.clock.per_s() - self.phase),
+                end.map_or(0.0, |[_, count, drain_s]| count + drain_s * self.clock.per_s() - self.phase),
             ),
             shift: self.clock.rate.shift,
             key: self.key,
@@ -184,8 +184,14 @@ impl Emitter {
             until,
             hanging: if self.is_jet { 0.0 } else { cube(whole) },
             leaving: cube(self.hanging.diameter_m),
-            drain: end.map_or(0.0, |[_, drain_s]| drain_s as f32),
+            drain: end.map_or(0.0, |[.., drain_s]| drain_s as f32),
         }
+    }
+
+    /// End of the rain whose drops it has, s; `None` if that goes on.
+    #[cfg(feature = "wgpu")]
+    pub(super) fn rain_end(&self) -> Option<f64> {
+        self.clock.end().map(|[stop_s, ..]| stop_s)
     }
 
     /// Upper bound of the number of drops in an exposure, which grows with its half time: at an instant, and per second of that.

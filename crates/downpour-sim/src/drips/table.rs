@@ -1,8 +1,10 @@
 //! Points that drip in a steady wind, as a device gets them: rows in cells, of which only those before a picture need room in its list.
 
-use glam::DVec3;
+use downpour_shaders::sim::field::FIELD_ALWAYS;
+use glam::{DVec3, Vec3};
 
 use super::Drips;
+use super::emitter::Emitter;
 use super::row::{DripFrame, DripRow};
 use crate::view::{View, within};
 
@@ -17,6 +19,10 @@ const MAX_FALL_M_S: f64 = 12.0;
 pub(crate) struct DripTable {
     /// Origin of the rows, m.
     origin: DVec3,
+    /// Velocity of the wind along the ground, m/s.
+    wind: Vec3,
+    /// End of the rain, s.
+    end_s: f64,
     rows: Vec<DripRow>,
     cells: Vec<DripCell>,
 }
@@ -47,6 +53,9 @@ impl DripTable {
         if !drips.options.wind.is_steady() {
             return None;
         }
+        let wind = drips.options.wind.velocity(0.0).as_vec3();
+        // Points that are set by hand drip in any rain.
+        let end_s = drips.emitters.iter().find_map(Emitter::rain_end).unwrap_or(f64::INFINITY);
         let balls = drips.emitters.iter().map(|emitter| emitter.around(0.0));
         let mut order: Vec<_> = drips.emitters.iter().zip(balls).collect();
         let cell_of = |middle: DVec3| (middle / CELL_M).floor().to_array().map(|part| part as i64);
@@ -64,7 +73,7 @@ impl DripTable {
             }
             cell
         });
-        Some(Self { origin, cells: cells.collect(), rows })
+        Some(Self { origin, wind: Vec3::new(wind.x, 0.0, wind.z), end_s, cells: cells.collect(), rows })
     }
 
     /// The rows.
@@ -73,7 +82,7 @@ impl DripTable {
     }
 
     /// Asks for the drops of a picture at a time in seconds in as much room as `view.max_drops`: where more might be, for the nearest.
-    pub(crate) fn query(&self, drips: &Drips, view: &View, least_pixels: f64, time_s: f64) -> DripQuery {
+    pub(crate) fn query(&self, view: &View, least_pixels: f64, time_s: f64) -> DripQuery {
         let half = 0.5 * view.shutter_s;
         let fastest = view.velocity.length() + MAX_FALL_M_S;
         let swept = view.swept_sides();
@@ -95,13 +104,11 @@ impl DripTable {
             }
             room += most;
         }
-        let wind = drips.options.wind.velocity(time_s);
-        let limit = f64::from(downpour_shaders::sim::field::FIELD_ALWAYS);
         let frame = DripFrame {
             eye: (view.eye - self.origin).as_vec3(),
             points: self.rows.len() as u32,
-            wind: DVec3::new(wind.x, 0.0, wind.z).as_vec3(),
-            end: (drips.end_s - time_s).min(limit) as f32,
+            wind: self.wind,
+            end: (self.end_s - time_s).min(FIELD_ALWAYS.into()) as f32,
             farthest: farthest as f32,
             fastest: fastest as f32,
             unused_1: 0,

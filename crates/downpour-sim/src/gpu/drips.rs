@@ -84,7 +84,7 @@ impl<'a> DripSearch<'a> {
     pub(super) fn query(&self) -> Result<DripQuery, SimError> {
         self.view.check()?;
         check_time(self.time_s)?;
-        Ok(self.drips.table.query(&self.drips.of, self.view, self.least_pixels, self.time_s))
+        Ok(self.drips.table.query(self.view, self.least_pixels, self.time_s))
     }
 
     /// Makes ready to add the drops to a list that has room for them, but for those on the eye's side of a pane.
