@@ -24,20 +24,20 @@ pub enum GpuMaskError {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct DropUniform {
+    /// Texels along an edge.
+    pub size: u32,
+    /// Width of a texel.
+    pub pixel: f32,
+    /// 1 / A^2 of the reference spheroid.
+    pub inverse_wide: f32,
+    /// 1 / B^2 of the reference spheroid.
+    pub inverse_tall: f32,
     /// Shape coefficients.
     pub shape: DropShapeCoefficients,
     /// Axis of the drop in the frame of the view.
     pub up: [f32; 3],
     /// Refractive index.
     pub index: f32,
-    /// 1 / A^2 of the reference spheroid.
-    pub inverse_wide: f32,
-    /// 1 / B^2 of the reference spheroid.
-    pub inverse_tall: f32,
-    /// Width of a texel.
-    pub pixel: f32,
-    /// Texels along an edge.
-    pub size: u32,
 }
 
 /// Uniform of the model kernel. The same layout as `MaskModelParameters` in WGSL.

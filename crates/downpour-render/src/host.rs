@@ -56,20 +56,22 @@ impl DepthRange {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct HostPlateFrame {
-    /// The camera.
-    pub camera: Camera,
     /// [`DepthRange::inverse`].
     pub inverse: [f32; 2],
     /// [`DepthRange::clear`].
     pub clear: f32,
     /// Radiance of the color 1.
     pub scale: f32,
+    /// The camera.
+    pub camera: Camera,
 }
 
 /// Frame of the environment map of a host application. The same layout as `HostEnvironmentFrame` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct HostEnvironmentFrame {
+    /// Width, height and first texel of each level of the picture.
+    pub levels: [[u32; 4]; HOST_LEVELS as usize],
     /// The camera.
     pub camera: Camera,
     /// Texels along an edge of the map that is made.
@@ -80,8 +82,6 @@ pub struct HostEnvironmentFrame {
     pub has_sky: u32,
     /// Radiance of the color 1 of the sky map.
     pub sky_scale: f32,
-    /// Width, height and first texel of each level of the picture.
-    pub levels: [[u32; 4]; HOST_LEVELS as usize],
 }
 
 /// Frame of the rain over a color texture. The same layout as `HostBlendFrame` in WGSL.

@@ -314,7 +314,7 @@ impl Plan {
             piece: 0,
             kept_span: 0,
             kept_since: 0.0,
-            unused_1: 0,
+            unread: 0,
             unused_2: 0,
             unused_3: 0,
         }

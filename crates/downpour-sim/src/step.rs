@@ -37,6 +37,14 @@ use crate::volume::{
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct StepFrame {
+    /// Not read: a software driver makes the kernel again for each value of the first word of a block that it reads.
+    pub unread: u32,
+    /// Time from the beginning of `kept_span` to the step, s.
+    pub kept_since: f32,
+    /// Padding of the WGSL layout.
+    pub unused_2: u32,
+    /// Padding of the WGSL layout.
+    pub unused_3: u32,
     /// The eye after the step.
     pub now: VolumeEye,
     /// Displacement of the origin, m; in a box, modulo whole boxes.
@@ -111,14 +119,6 @@ pub struct StepFrame {
     pub piece: u32,
     /// Span of time whose impacts are kept with those of this step.
     pub kept_span: u32,
-    /// Time from its beginning to that of the step, s.
-    pub kept_since: f32,
-    /// Padding of the WGSL layout.
-    pub unused_1: u32,
-    /// Padding of the WGSL layout.
-    pub unused_2: u32,
-    /// Padding of the WGSL layout.
-    pub unused_3: u32,
 }
 
 /// A drop between two steps: 32 bytes.

@@ -79,6 +79,14 @@ pub(crate) fn listed(listing: &Listing<'_>, drops: &[StepDrop], kept: &[Vec<Step
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct StepListFrame {
+    /// Not read: a software driver makes the kernel again for each value of the first word of a block that it reads.
+    pub unread: u32,
+    /// Places of the list that are free.
+    pub room: u32,
+    /// Padding of the WGSL layout.
+    pub unused_2: u32,
+    /// Padding of the WGSL layout.
+    pub unused_3: u32,
     /// Eye, m, relative to the origin of the state.
     pub eye: [f32; 3],
     /// Time from the state to the picture, s.
@@ -125,14 +133,6 @@ pub struct StepListFrame {
     pub first: u32,
     /// Places of the list that are taken.
     pub known: u32,
-    /// Places of the list that are free.
-    pub room: u32,
-    /// Padding of the WGSL layout.
-    pub unused_1: u32,
-    /// See `unused_1`.
-    pub unused_2: u32,
-    /// See `unused_1`.
-    pub unused_3: u32,
 }
 
 impl StepListFrame {
@@ -166,7 +166,7 @@ impl StepListFrame {
             first: 0,
             known: 0,
             room: 0,
-            unused_1: 0,
+            unread: 0,
             unused_2: 0,
             unused_3: 0,
         }

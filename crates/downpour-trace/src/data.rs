@@ -53,6 +53,8 @@ pub struct RenderCorner {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct RenderFrame {
+    /// Width, height and first texel of each level of the sky.
+    pub sky_levels: [[u32; 4]; SCENE_SKY_LEVELS as usize],
     /// The camera.
     pub camera: Camera,
     /// Samples along an edge of a pixel.
@@ -106,8 +108,6 @@ pub struct RenderFrame {
     pub translucent: u32,
     /// Not used.
     pub unused: u32,
-    /// Width, height and first texel of each level of the sky.
-    pub sky_levels: [[u32; 4]; SCENE_SKY_LEVELS as usize],
     /// Irradiance of the sky over pi as spherical harmonics of degree 2.
     pub sky_irradiance: [[f32; 4]; 9],
 }

@@ -110,20 +110,20 @@ pub struct PixelLight {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct TemporalFrame {
-    /// Its camera.
-    pub camera: Camera,
-    /// From positions of the other frame to the same positions in its coordinates, m.
-    pub shift: Vec3,
+    /// Not read: a software driver makes the kernel again for each value of the first word of a block that it reads.
+    pub unread: u32,
     /// Number of frames that have been added before.
     pub turn: u32,
     /// 1: no frame comes after it.
     pub is_last: u32,
     /// Greatest number of frames of a running mean ([`running_light`](crate::running_light)) that count beside a frame; 0: there is none.
     pub max_weight: f32,
+    /// Its camera.
+    pub camera: Camera,
+    /// From positions of the other frame to the same positions in its coordinates, m.
+    pub shift: Vec3,
     /// The same of what a gloss mirrors.
     pub max_gloss: f32,
-    /// Nothing.
-    pub unused: u32,
 }
 
 impl TemporalFrame {

@@ -8,14 +8,14 @@ use crate::grid::WindGrid;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct WindFieldGrid {
-    /// Lower corner of the box, m.
-    pub low: [f32; 3],
-    /// Number of matrices.
-    pub primitives: u32,
     /// Edges of a cell, m.
     pub cell: [f32; 3],
     /// Number of turbulence modes.
     pub modes: u32,
+    /// Lower corner of the box, m.
+    pub low: [f32; 3],
+    /// Number of matrices.
+    pub primitives: u32,
     /// Inverse edges of a cell, 1/m.
     pub per_cell: [f32; 3],
     /// Padding of the WGSL layout.

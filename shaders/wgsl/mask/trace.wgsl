@@ -6,17 +6,18 @@
 // Twin: downpour_mask::trace, where the method is derived.
 
 struct MaskTracedDrop {
+    // Pixels along an edge of the mask.
+    size: u32,
+    // Width of a pixel.
+    pixel: f32,
+    // 1 / A^2 across and 1 / B^2 along the axis of the reference spheroid.
+    inverse_wide: f32,
+    inverse_tall: f32,
     shape: DropShapeCoefficients,
     // The drop's axis in the frame of the view, of length 1.
     up: vec3f,
     // Refractive index of water relative to air.
     index: f32,
-    // 1 / A^2 across and 1 / B^2 along the axis of the reference spheroid.
-    inverse_wide: f32,
-    inverse_tall: f32,
-    // Width of a pixel, and pixels along an edge of the mask.
-    pixel: f32,
-    size: u32,
 }
 
 struct MaskTraceSurface {

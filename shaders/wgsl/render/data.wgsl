@@ -2,6 +2,8 @@
 // Host types: downpour_trace::data.
 
 struct RenderFrame {
+    // Width, height and first texel of each level of the sky.
+    sky_levels: array<vec4u, SCENE_SKY_LEVELS>,
     camera: RenderCamera,
     // Samples along an edge of a pixel.
     grid: u32,
@@ -46,8 +48,6 @@ struct RenderFrame {
     // 1 if materials transmit light diffusely.
     translucent: u32,
     unused: u32,
-    // Width, height and first texel of each level of the sky.
-    sky_levels: array<vec4u, SCENE_SKY_LEVELS>,
     // Irradiance of the sky over pi as spherical harmonics of degree 2.
     sky_irradiance: array<vec4f, 9>,
 }

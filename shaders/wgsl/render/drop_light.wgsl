@@ -6,10 +6,10 @@
 const DROP_LIGHT_PI: f32 = 3.1415927;
 
 struct DropLightFrame {
-    // Drops.
-    count: u32,
     // DROP_LIGHT_TRACED, DROP_LIGHT_ATLAS, DROP_LIGHT_ROUSSEAU, DROP_LIGHT_IM_SUNG or DROP_LIGHT_NONE.
     form: u32,
+    // Drops.
+    count: u32,
     // Rows that are kept of each drop besides its mean: glints, one each, lamps, two each, or streaks of an atlas, three each.
     glints: u32,
     // First lamp of this dispatch, which has DROP_LIGHT_LAMPS of them at most.

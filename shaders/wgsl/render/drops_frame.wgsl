@@ -2,6 +2,14 @@
 // Twin: downpour_render::rain::drops_frame.
 
 struct DropsFrame {
+    // Not read: a software driver makes the kernel again for each value of the first word of a block that it reads.
+    unread: u32,
+    // Drops of the list.
+    count: u32,
+    // Classes, from the first, whose means are made before a drop asks for them.
+    made_classes: u32,
+    // Multiple of the light that a drop takes out and gives: 1 is what physics gives.
+    visibility: f32,
     camera: RenderCamera,
     // Axes of the capture in the papers' form: the whole of it at distance 1.
     capture_right: vec3f,
@@ -29,13 +37,6 @@ struct DropsFrame {
     glints: u32,
     // First word of the atlas behind the masks; 0: there is none.
     atlas: u32,
-    // Multiple of the light that a drop takes out and gives: 1 is what physics gives.
-    visibility: f32,
-    // Classes, from the first, whose means are made before a drop asks for them.
-    made_classes: u32,
-    // Drops of the list.
-    count: u32,
-    unused_c: u32,
 }
 
 @group(0) @binding(0) var<uniform> drops_frame: DropsFrame;

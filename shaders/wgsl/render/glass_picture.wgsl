@@ -10,6 +10,13 @@
 // Twin: downpour_render::glass::picture.
 
 struct GlassPictureFrame {
+    // Not read: a software driver makes the kernel again for each value of the first word of a block that it reads.
+    unread: u32,
+    // Lamps, and the least radius of the disks of drops that show them, m.
+    lights: u32,
+    lit_from: f32,
+    // Blades of wipers.
+    blade_count: u32,
     camera: RenderCamera,
     // The pane's axes in the world, of length 1: right, down, out of it.
     across: vec3f,
@@ -44,12 +51,6 @@ struct GlassPictureFrame {
     // Refractive indices.
     water: f32,
     first_row: u32,
-    // Lamps, and the least radius of the disks of drops that show them, m.
-    lights: u32,
-    lit_from: f32,
-    // Blades of wipers.
-    blade_count: u32,
-    unused: u32,
     // Width, height and first texel of each level of the picture.
     levels: array<vec4u, GLASS_PICTURE_LEVELS>,
     blades: array<GlassPictureBlade, GLASS_PICTURE_BLADES>,

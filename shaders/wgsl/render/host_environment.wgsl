@@ -4,6 +4,8 @@
 // Twin: downpour_render::host.
 
 struct HostEnvironmentFrame {
+    // Width, height and first texel of each level of the picture.
+    levels: array<vec4u, HOST_LEVELS>,
     camera: RenderCamera,
     // Texels along an edge of the map that is made.
     size: u32,
@@ -13,8 +15,6 @@ struct HostEnvironmentFrame {
     has_sky: u32,
     // Radiance of the color 1 of the sky map.
     sky_scale: f32,
-    // Width, height and first texel of each level of the picture.
-    levels: array<vec4u, HOST_LEVELS>,
 }
 
 @group(0) @binding(0) var<uniform> host_environment_frame: HostEnvironmentFrame;

@@ -3,13 +3,13 @@
 // Twin: downpour_render::host.
 
 struct HostPlateFrame {
-    camera: RenderCamera,
     // Inverse depth, 1/m, at the value 0 of the depth texture, and how much more it is at 1.
     inverse: vec2f,
     // Value of the depth texture where nothing was drawn.
     clear: f32,
     // Radiance of the color 1.
     scale: f32,
+    camera: RenderCamera,
 }
 
 @group(0) @binding(0) var<uniform> host_plate_frame: HostPlateFrame;

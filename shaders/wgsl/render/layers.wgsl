@@ -16,6 +16,10 @@ struct LayersLamp {
 }
 
 struct LayersFrame {
+    // Factor of the opacity of the texture.
+    strength: f32,
+    // Distance of the farthest layer over that of the nearest.
+    parallax: f32,
     // Direction of the fall on the picture, right and up.
     fall: vec2f,
     // Part of a period by which the streaks have moved.
@@ -25,10 +29,6 @@ struct LayersFrame {
     row: u32,
     // Number of lamps.
     count: u32,
-    // Factor of the opacity of the texture.
-    strength: f32,
-    // Distance of the farthest layer over that of the nearest.
-    parallax: f32,
     // Fraction of white.
     milk: f32,
     // Length of streaks over that in the texture.

@@ -16,6 +16,13 @@ struct MediumShell {
 }
 
 struct MediumFrame {
+    // Columns and rows of the grid of open air.
+    columns: u32,
+    rows: u32,
+    // Lamps that light the drops: MEDIUM_DARK, MEDIUM_LAMPS or MEDIUM_SPOTS.
+    lit: u32,
+    // Class of drops whose mean radiance the medium has.
+    shape: u32,
     // Optical depth of level rays up to MEDIUM_NEAR meters, then a factor of 2^(1/3) farther each, within the region.
     depths: array<vec4f, MEDIUM_QUARTERS>,
     // Unit direction from which drops come.
@@ -33,13 +40,6 @@ struct MediumFrame {
     eye: vec3f,
     // 1: nothing stands anywhere that could keep rain off.
     open: u32,
-    // Columns and rows of the grid of open air.
-    columns: u32,
-    rows: u32,
-    // Lamps that light the drops: MEDIUM_DARK, MEDIUM_LAMPS or MEDIUM_SPOTS.
-    lit: u32,
-    // Class of drops whose mean radiance the medium has.
-    shape: u32,
     // A pane before the eye, which keeps rain off this side of it: unit normal away from the eye, and its distance; 0: none.
     pane: vec4f,
     // Fog: extinction at its base, 1/m; inverse of its height, 1/m (0: the same everywhere); height of the eye above its base, m; albedo.

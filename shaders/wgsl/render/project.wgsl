@@ -9,6 +9,11 @@
 // Twin: downpour_render::rain::project.
 
 struct ProjectFrame {
+    // Not read: a software driver makes the kernel again for each value of the first word of a block that it reads.
+    unread: u32,
+    // 1 if drops have an axis in project_rows, for an atlas.
+    has_axes: u32,
+    unused: vec2u,
     camera: RenderCamera,
     // Velocity of the eye, m/s.
     eye_velocity: vec3f,
@@ -36,10 +41,6 @@ struct ProjectFrame {
     is_fading: u32,
     // 1 if drops of the smallest diameter look the same from everywhere.
     small_are_round: u32,
-    // 1 if drops have an axis in project_rows, for an atlas.
-    has_axes: u32,
-    unused_1: u32,
-    unused: vec2u,
 }
 
 // The part of a path that is shown.

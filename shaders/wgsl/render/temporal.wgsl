@@ -3,19 +3,20 @@
 // Twin: downpour_trace::temporal, where the method is described.
 
 struct TemporalFrame {
-    // Camera of the frame before.
-    camera: RenderCamera,
-    // From positions of this frame to the same positions in the coordinates of that frame, m.
-    shift: vec3f,
+    // Not read: a software driver makes the kernel again for each value of the first word of a block that it reads.
+    unread: u32,
     // How many frames have been added before; 0: this is the first.
     turn: u32,
     // 1: no frame comes after it.
     is_last: u32,
     // Greatest number of frames of a running mean (running_light.wgsl) that count beside this one; 0: there is none.
     max_weight: f32,
+    // Camera of the frame before.
+    camera: RenderCamera,
+    // From positions of this frame to the same positions in the coordinates of that frame, m.
+    shift: vec3f,
     // The same of what a gloss mirrors.
     max_gloss: f32,
-    unused: u32,
 }
 
 // Of that frame: what its pixels have found, and the means over neighbors of it. This frame's are in skylight_ambient and skylight_before.

@@ -36,6 +36,13 @@ struct DripRow {
 }
 
 struct DripFrame {
+    // Not read: a software driver makes the kernel again for each value of the first word of a block that it reads.
+    unread: u32,
+    unused_2: u32,
+    // Largest distance of a drop, m.
+    farthest: f32,
+    // Upper bound of the speed of a drop relative to the eye, m/s.
+    fastest: f32,
     // Position of the eye relative to the origin of the points, m.
     eye: vec3f,
     points: u32,
@@ -43,12 +50,6 @@ struct DripFrame {
     wind: vec3f,
     // End of the rain, s from the time of the picture.
     end: f32,
-    // Largest distance of a drop, m.
-    farthest: f32,
-    // Upper bound of the speed of a drop relative to the eye, m/s.
-    fastest: f32,
-    unused_1: u32,
-    unused_2: u32,
 }
 
 @group(0) @binding(9) var<uniform> drip_frame: DripFrame;

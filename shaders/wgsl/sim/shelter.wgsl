@@ -6,6 +6,13 @@
 // Twin: downpour_sim::shelter.
 
 struct ShelterFrame {
+    // Not read: a software driver makes the kernel again for each value of the first word of a block that it reads.
+    unread: u32,
+    // Places of the list that are asked for, and the first of them.
+    room: u32,
+    first: u32,
+    // 1: only drops that are stopped while the shutter is open are asked for; others stay as they are, whatever is above them.
+    stopped: u32,
     // Position of the eye relative to the obstacles, m.
     eye: vec3f,
     // Half the exposure time, s.
@@ -17,12 +24,6 @@ struct ShelterFrame {
     high: vec3f,
     // Number of quarters of a second that paths are followed back; 0 in a steady wind.
     cuts: u32,
-    // Places of the list that are asked for, and the first of them.
-    room: u32,
-    first: u32,
-    // 1: only drops that are stopped while the shutter is open are asked for; others stay as they are, whatever is above them.
-    stopped: u32,
-    unused: u32,
 }
 
 @group(0) @binding(6) var<uniform> shelter_frame: ShelterFrame;

@@ -10,6 +10,12 @@ override STEP_FIELD: bool = true;
 override STEP_COLLIDES: bool = true;
 
 struct StepFrame {
+    // Not read: a software driver makes the kernel again for each value of the first word of a block that it reads.
+    unread: u32,
+    // Time from the beginning of kept_span to the step, s.
+    kept_since: f32,
+    unused_2: u32,
+    unused_3: u32,
     // The eye after the step.
     now: VolumeEye,
     // Displacement of the origin, m; in a box, modulo whole boxes.
@@ -75,12 +81,8 @@ struct StepFrame {
     // Number of pieces of the drops, and index of this one.
     pieces: u32,
     piece: u32,
-    // Span of time whose impacts are kept with those of this step, and time from its beginning to that of the step, s.
+    // Span of time whose impacts are kept with those of this step, s.
     kept_span: u32,
-    kept_since: f32,
-    unused_1: u32,
-    unused_2: u32,
-    unused_3: u32,
 }
 
 // A drop between two steps.

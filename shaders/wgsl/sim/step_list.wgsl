@@ -6,6 +6,12 @@
 // Twin: downpour_sim::step_list.
 
 struct StepListFrame {
+    // Not read: a software driver makes the kernel again for each value of the first word of a block that it reads.
+    unread: u32,
+    // Places of the list that are free.
+    room: u32,
+    unused_2: u32,
+    unused_3: u32,
     // Eye, m, relative to the origin of the state.
     eye: vec3f,
     // Time from the state to the picture, s.
@@ -40,12 +46,8 @@ struct StepListFrame {
     // Drops or slots of this dispatch, and the number of the first.
     count: u32,
     first: u32,
-    // Places of the list that are taken, and those that are free.
+    // Places of the list that are taken.
     known: u32,
-    room: u32,
-    unused_1: u32,
-    unused_2: u32,
-    unused_3: u32,
 }
 
 // Position of a drop at the picture's time if nothing stops it, m, and its word then.

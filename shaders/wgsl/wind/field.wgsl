@@ -6,14 +6,14 @@
 // Twin: downpour_wind::field.
 
 struct WindFieldGrid {
-    // Lower corner of the box, m.
-    low: vec3f,
-    // Number of primitives.
-    primitives: u32,
     // Edges of a cell, m.
     cell: vec3f,
     // Number of turbulence modes.
     modes: u32,
+    // Lower corner of the box, m.
+    low: vec3f,
+    // Number of primitives.
+    primitives: u32,
     // Inverses of the edges, 1/m.
     per_cell: vec3f,
     // Number of cells along each edge.

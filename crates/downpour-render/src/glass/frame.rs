@@ -23,6 +23,14 @@ const PLASTIC: [f32; 2] = [0.754_877_7, 0.569_840_3];
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct GlassPictureFrame {
+    /// Not read: a software driver makes the kernel again for each value of the first word of a block that it reads.
+    pub unread: u32,
+    /// Number of lamps.
+    pub lights: u32,
+    /// Least radius of the discs of drops that show lamps, m.
+    pub lit_from: f32,
+    /// Number of wipers.
+    pub blade_count: u32,
     /// The camera.
     pub camera: Camera,
     /// The pane's right in the world.
@@ -69,14 +77,6 @@ pub struct GlassPictureFrame {
     pub water: f32,
     /// First row of pixels of a dispatch.
     pub first_row: u32,
-    /// Number of lamps.
-    pub lights: u32,
-    /// Least radius of the discs of drops that show lamps, m.
-    pub lit_from: f32,
-    /// Number of wipers.
-    pub blade_count: u32,
-    /// 0.
-    pub unused: u32,
     /// Width, height and first texel of each level of the picture.
     pub levels: [[u32; 4]; GLASS_PICTURE_LEVELS as usize],
     /// Wipers.

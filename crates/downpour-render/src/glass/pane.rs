@@ -293,7 +293,7 @@ impl WetPane {
                 lights: lights.len() as u32,
                 lit_from: self.highlight_radius(),
                 blade_count,
-                unused: 0,
+                unread: 0,
                 levels,
                 blades,
             },

@@ -13,6 +13,14 @@ const STREAK_SPARE: u32 = 16;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct DropsFrame {
+    /// Not read: a software driver makes the kernel again for each value of the first word of a block that it reads.
+    pub unread: u32,
+    /// Drops of the list.
+    pub count: u32,
+    /// Classes, from the first, whose means are made before a drop asks for them.
+    pub made_classes: u32,
+    /// Multiple of the light that a drop takes out and gives.
+    pub visibility: f32,
     /// The camera.
     pub camera: Camera,
     /// Right axis of the capture in the papers' form: its whole width at distance 1.
@@ -43,14 +51,6 @@ pub struct DropsFrame {
     pub glints: u32,
     /// First word of the atlas behind the masks; 0: no atlas.
     pub atlas: u32,
-    /// Multiple of the light that a drop takes out and gives.
-    pub visibility: f32,
-    /// Classes, from the first, whose means are made before a drop asks for them.
-    pub made_classes: u32,
-    /// Drops of the list.
-    pub count: u32,
-    /// 0.
-    pub unused_c: u32,
 }
 
 /// Data that the drops' kernels read besides the drops.
@@ -91,7 +91,7 @@ impl DropsFrame {
             visibility: options.visibility as f32,
             made_classes: 0,
             count: 0,
-            unused_c: 0,
+            unread: 0,
         }
     }
 }

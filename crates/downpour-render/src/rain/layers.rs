@@ -77,6 +77,10 @@ pub struct LayersLamp {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct LayersFrame {
+    /// Factor of the opacity of the texture.
+    pub strength: f32,
+    /// Distance of the farthest layer over that of the nearest.
+    pub parallax: f32,
     /// Direction of the fall on the picture, right and up.
     pub fall: [f32; 2],
     /// Part of a period by which the streaks have moved.
@@ -87,10 +91,6 @@ pub struct LayersFrame {
     pub row: u32,
     /// Number of lamps.
     pub count: u32,
-    /// Factor of the opacity of the texture.
-    pub strength: f32,
-    /// Distance of the farthest layer over that of the nearest.
-    pub parallax: f32,
     /// Fraction of white.
     pub milk: f32,
     /// Length of streaks over that in the texture.

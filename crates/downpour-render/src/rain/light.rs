@@ -139,10 +139,10 @@ impl DropLightOptions {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct DropLightFrame {
-    /// Number of drops.
-    pub count: u32,
     /// Form of the light, a [`DropLightForm`].
     pub form: u32,
+    /// Number of drops.
+    pub count: u32,
     /// Rows kept for each drop besides its mean.
     pub glints: u32,
     /// First lamp of the dispatch.

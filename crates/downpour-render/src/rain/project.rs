@@ -34,6 +34,12 @@ const AXIS_IDS: u32 = 0x00ff_ffff;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct ProjectFrame {
+    /// Not read: a software driver makes the kernel again for each value of the first word of a block that it reads.
+    pub unread: u32,
+    /// 1 if drops have axes, for an atlas.
+    pub has_axes: u32,
+    /// 0.
+    pub unused: [u32; 2],
     /// The camera.
     pub camera: Camera,
     /// Velocity of the eye, m/s.
@@ -64,12 +70,6 @@ pub struct ProjectFrame {
     pub is_fading: u32,
     /// 1 if drops of the smallest diameter look the same from everywhere.
     pub small_are_round: u32,
-    /// 1 if drops have axes, for an atlas.
-    pub has_axes: u32,
-    /// 0.
-    pub unused_1: u32,
-    /// 0.
-    pub unused: [u32; 2],
 }
 
 impl ProjectFrame {
@@ -99,7 +99,7 @@ impl ProjectFrame {
             is_fading: u32::from(exposure.response == TemporalResponse::Fading),
             small_are_round: u32::from(masks.small_are_round()),
             has_axes: u32::from(options.light.form == DropLightForm::Atlas),
-            unused_1: 0,
+            unread: 0,
             unused: [0; 2],
         }
     }

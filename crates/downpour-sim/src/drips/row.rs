@@ -49,6 +49,14 @@ pub struct DripRow {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct DripFrame {
+    /// Not read: a software driver makes the kernel again for each value of the first word of a block that it reads.
+    pub unread: u32,
+    /// 0.
+    pub unused_2: u32,
+    /// Largest distance of a drop, m.
+    pub farthest: f32,
+    /// Upper bound of the speed of a drop relative to the eye, m/s.
+    pub fastest: f32,
     /// Position of the eye relative to the origin of the points, m.
     pub eye: Vec3,
     /// Number of points.
@@ -57,14 +65,6 @@ pub struct DripFrame {
     pub wind: Vec3,
     /// End of the rain, s from the time of the picture.
     pub end: f32,
-    /// Largest distance of a drop, m.
-    pub farthest: f32,
-    /// Upper bound of the speed of a drop relative to the eye, m/s.
-    pub fastest: f32,
-    /// 0.
-    pub unused_1: u32,
-    /// 0.
-    pub unused_2: u32,
 }
 
 /// Number of drops of a point by time: it rises with the rain, and after it by a part that decays.

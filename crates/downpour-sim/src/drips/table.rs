@@ -111,7 +111,7 @@ impl DripTable {
             end: (self.end_s - time_s).min(FIELD_ALWAYS.into()) as f32,
             farthest: farthest as f32,
             fastest: fastest as f32,
-            unused_1: 0,
+            unread: 0,
             unused_2: 0,
         };
         DripQuery { frame, room: room as u32 }

@@ -133,6 +133,14 @@ impl FieldFrame {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct ShelterFrame {
+    /// Not read: a software driver makes the kernel again for each value of the first word of a block that it reads.
+    pub unread: u32,
+    /// Places of the list that are asked for.
+    pub room: u32,
+    /// First of them.
+    pub first: u32,
+    /// 1: only drops that are stopped while the shutter is open are asked for.
+    pub stopped: u32,
     /// Position of the eye relative to the obstacles, m.
     pub eye: Vec3,
     /// Half the exposure time, s.
@@ -145,14 +153,6 @@ pub struct ShelterFrame {
     pub high: Vec3,
     /// Number of quarters of a second that paths are followed back; 0 in a steady wind.
     pub cuts: u32,
-    /// Places of the list that are asked for.
-    pub room: u32,
-    /// First of them.
-    pub first: u32,
-    /// 1: only drops that are stopped while the shutter is open are asked for.
-    pub stopped: u32,
-    /// 0.
-    pub unused: u32,
 }
 
 /// Drops of a picture, as a GPU is asked for them.

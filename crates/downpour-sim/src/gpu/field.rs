@@ -435,7 +435,7 @@ fn shelter_frame(
         room: query.frame.room,
         first: query.frame.first,
         stopped: 0,
-        unused: 0,
+        unread: 0,
     };
     (frame, drift)
 }

@@ -16,6 +16,14 @@ use crate::rain::project::project_class;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct MediumFrame {
+    /// Columns of the grid of open air.
+    pub columns: u32,
+    /// Its rows.
+    pub rows: u32,
+    /// One of `MEDIUM_DARK`, `MEDIUM_LAMPS`, `MEDIUM_SPOTS`.
+    pub lit: u32,
+    /// Class of drops whose mean radiance the medium uses.
+    pub shape: u32,
     /// Optical depth of level rays within the region: at 0.25 m, then a factor of 2^(1/3) farther each.
     pub depths: [[f32; 4]; MEDIUM_QUARTERS as usize],
     /// Unit vector against the mean fall.
@@ -34,14 +42,6 @@ pub struct MediumFrame {
     pub eye: [f32; 3],
     /// 1: no obstacle shelters anything from the rain.
     pub open: u32,
-    /// Columns of the grid of open air.
-    pub columns: u32,
-    /// Its rows.
-    pub rows: u32,
-    /// One of `MEDIUM_DARK`, `MEDIUM_LAMPS`, `MEDIUM_SPOTS`.
-    pub lit: u32,
-    /// Class of drops whose mean radiance the medium uses.
-    pub shape: u32,
     /// A pane before the eye, which keeps rain off this side of it: unit normal away from the eye, and its distance, m; 0: none.
     pub pane: [f32; 4],
     /// Fog: extinction at its base, 1/m; inverse of its height, 1/m (0: the same everywhere); height of the eye above its base, m;
