@@ -7,7 +7,8 @@
 //!   interval with some jitter, drawn from hashes: the drops of any time are found without those before.
 //!
 //! A drop hangs and grows before it falls, by quadratic drag from rest and with the wind, until it hits something. Water that has
-//! dripped runs on over the surface that it falls on, and may drip again.
+//! dripped runs on over the surface that it falls on, and may drip again. Where a drop lands it splashes as a drop of the rain does
+//! ([`Drips::splashes`]).
 //!
 //! In a steady wind a device finds the same drops ([`row`]; `gpu::DripPipeline`, feature `wgpu`).
 //!
@@ -69,7 +70,8 @@ use crate::SimError;
 use crate::facets::Facets;
 use crate::falling::FallingDrop;
 use crate::field::check_time;
-use crate::impacts::{Impact, check_span};
+use crate::impacts::splashes::{MAX_CROWN_S, largest};
+use crate::impacts::{Impact, SplashOptions, check_span};
 use crate::shelter::Obstacles;
 use crate::view::{View, within};
 
@@ -221,6 +223,45 @@ impl Drips {
             drops.truncate(view.max_drops as usize);
         }
         Ok(drops)
+    }
+
+    /// Crowns of the splashes of drops that have dripped, as a picture shows them at a time in seconds; see [`RainField::splashes`].
+    ///
+    /// # Errors
+    /// As [`RainField::splashes`].
+    ///
+    /// [`RainField::splashes`]: crate::field::RainField::splashes
+    pub fn splashes(
+        &self,
+        obstacles: &Obstacles<'_>,
+        view: &View,
+        time_s: f64,
+        options: &SplashOptions,
+    ) -> Result<Vec<FallingDrop>, SimError> {
+        view.check()?;
+        check_time(time_s)?;
+        options.check()?;
+        let facets = Facets::new(obstacles);
+        let query = Query { obstacles, facets: &facets, wind: &self.options.wind };
+        let span_s = [time_s - MAX_CROWN_S, time_s];
+        let reach = self.reach([span_s[0] - MAX_FALL_S, time_s]);
+        let wind = self.options.wind.velocity(time_s).length();
+        let sides = view.sides();
+        let of_emitter = |emitter: &Emitter| {
+            let [diameter, speed] = emitter.falling();
+            let Some((crown, range)) = options.largest_crown(view, diameter, speed + wind) else {
+                return Vec::new();
+            };
+            let (middle, radius) = emitter.around(reach);
+            let offset = middle - view.eye;
+            if offset.length() - radius - crown > range || !within(&sides, offset, radius + 1.5 * crown) {
+                return Vec::new();
+            }
+            let impacts = emitter.impacts(&query, span_s).into_iter();
+            impacts.filter_map(|impact| options.crown(&impact, view, time_s)).collect()
+        };
+        let crowns: Vec<Vec<FallingDrop>> = self.emitters.par_iter().map(of_emitter).collect();
+        Ok(largest(crowns.into_iter().flatten().collect()))
     }
 
     /// True if a device can find the drops: in a steady wind, where a fall ends in the same place each time.

@@ -37,7 +37,7 @@ pub(crate) mod slices;
 pub mod splash_frame;
 #[cfg(feature = "wgpu")]
 pub(crate) mod splash_search;
-mod splashes;
+pub(crate) mod splashes;
 mod ways;
 
 use downpour_math::{OutOfRange, in_range};

@@ -6,9 +6,11 @@ use downpour_bvh::Bvh;
 use downpour_drop::air::Air;
 use downpour_drop::drip::{self, Drip};
 use downpour_drop::fall_speed::{FallSpeedModel, TerminalSpeed, terminal_speed};
+use downpour_drop::splash::{FILM_M, SplashLaw};
 use downpour_math::ops::f64 as ops;
 use downpour_sim::drips::{DripOptions, DripPoint, DripPoints, DripRain, DripRegion, Drips, SetDrip};
 use downpour_sim::field::{DropKind, FallingDrop};
+use downpour_sim::impacts::SplashOptions;
 use downpour_sim::shelter::Obstacles;
 use downpour_sim::view::View;
 use downpour_wind::{Gusts, UniformWind, Wind, WindPart};
@@ -270,6 +272,47 @@ fn a_fall_from_three_meters_takes_its_time() {
     assert!(seen > 20, "{seen}");
 }
 
+/// A drop that lands makes the crown of its speed, in its place and time; one that falls too slowly makes none.
+#[test]
+fn a_drop_that_lands_splashes() {
+    let bvh = Bvh::new(&floor());
+    let high = SetDrip { position: DVec3::new(0.0, 3.0, 0.0), per_s: 2.0, diameter_m: 4.0e-3 };
+    let low = SetDrip { position: DVec3::new(0.3, 0.3, 0.0), per_s: 9.0, diameter_m: 2.0e-3 };
+    let drips = Drips::new(&obstacles(&bvh), &[], None, &[high, low], &options(still())).unwrap();
+    let splashes = SplashOptions { law: SplashLaw::new(FILM_M, 20.0).unwrap(), size: 1.0 };
+    let terminal = terminal_speed(FallSpeedModel::Beard1976, 4.0e-3, &Air::standard()).unwrap();
+    let square = terminal * terminal;
+    let speed = (square * (1.0 - ops::exp(-2.0 * 9.806_65 * 3.0 / square))).sqrt();
+    let expected = splashes.law.splash(4.0e-3, speed).unwrap();
+    let (step, steps) = (0.01, 1000);
+    let (mut begins, mut shown) = (std::collections::BTreeMap::new(), 0);
+    for k in 0..steps {
+        let time_s = step * f64::from(k);
+        for crown in drips.splashes(&obstacles(&bvh), &view(), time_s, &splashes).unwrap() {
+            assert_eq!(crown.kind, DropKind::Splash);
+            let [begin, end] = crown.present_s.map(f64::from);
+            assert!(begin <= 0.0 && end > 0.0, "{begin} {end}");
+            assert!(((end - begin) / expected.duration_s - 1.0).abs() < 0.01, "{} s", end - begin);
+            let size = f64::from(crown.diameter) / (2.0 * expected.radius_m);
+            assert!((0.74..1.26).contains(&size), "{size} of the law's size");
+            assert!(crown.position.distance(DVec3::ZERO) < 0.02, "{}", crown.position);
+            begins.insert(crown.id, time_s + begin);
+            shown += 1;
+        }
+    }
+    let (corner, opposite) = (DVec3::splat(-5.0), DVec3::splat(5.0));
+    let span_s = [0.0, step * f64::from(steps - 1)];
+    let impacts = drips.impacts(&obstacles(&bvh), corner, opposite, span_s, 3.0e-3).unwrap();
+    assert!((18..=22).contains(&impacts.len()), "{}", impacts.len());
+    for impact in &impacts {
+        let is_its = |begin: &&f64| (**begin - impact.time_s).abs() < 1.0e-5;
+        assert_eq!(begins.values().filter(is_its).count(), 1, "at {} s", impact.time_s);
+    }
+    // Each is seen for its duration.
+    let mean = f64::from(shown) * step / impacts.len() as f64;
+    assert!((mean / expected.duration_s - 1.0).abs() < 0.1, "{mean} s of {}", expected.duration_s);
+}
+
 /// A drop hangs until it falls, from the same place, and grows meanwhile.
 #[test]
 fn a_drop_hangs_and_grows_and_falls() {
@@ -424,4 +467,6 @@ fn queries_out_of_range_are_refused() {
     assert!(drips.is_empty());
     assert!(drips.visible(&obstacles(&bvh), &view(), 0.1, f64::NAN).is_err());
     assert!(drips.impacts(&obstacles(&bvh), DVec3::ZERO, DVec3::ONE, [0.0, 61.0], 0.0).is_err());
+    let splashes = SplashOptions { law: SplashLaw::new(FILM_M, 20.0).unwrap(), size: 11.0 };
+    assert!(drips.splashes(&obstacles(&bvh), &view(), 0.0, &splashes).is_err());
 }

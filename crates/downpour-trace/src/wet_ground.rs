@@ -6,6 +6,7 @@ use downpour_drop::distribution::DropSizeDistribution;
 use downpour_lattice::puddle::PuddleForm;
 use downpour_scene::picture::{Picture, Pixels};
 use downpour_sim::field::RainField;
+use downpour_sim::impacts::Impact;
 use downpour_weather::{Loaded, Puddle, PuddleFill, PuddleRings, PuddleShape, Waves, Weather};
 use glam::{DVec3, Vec2, Vec3};
 
@@ -184,21 +185,26 @@ impl WetGround {
         self.ripples.advance(time_s)
     }
 
-    /// Finds the rings of single drops of a rain in closed form, for a picture of a scene at a time in seconds.
+    /// True if drops make rings on puddles.
+    #[must_use]
+    pub fn has_rings(&self) -> bool {
+        self.law.is_some() && self.puddles.iter().any(|(_, look)| look.has_rings())
+    }
+
+    /// Finds the rings of single drops of a rain in closed form, and of drops that have dripped ([`Rings::asked`]), for a picture of a scene at
+    /// a time in seconds.
     ///
     /// # Errors
     /// As [`WetGround::new`]; [`PuddleError::Sim`] for an eye or a time out of range.
     pub fn find_rings(
         &mut self,
         field: &Arc<RainField>,
+        dripped: &[Impact],
         frame_scene: &FrameScene,
         time_s: f64,
     ) -> Result<(), PuddleError> {
         self.shown = None;
-        let Some(heaviest) = &self.law else { return Ok(()) };
-        if !self.puddles.iter().any(|(_, look)| look.has_rings()) {
-            return Ok(());
-        }
+        let Some(heaviest) = self.law.as_ref().filter(|_| self.has_rings()) else { return Ok(()) };
         let rings = match self.rings.take() {
             Some(rings) => rings,
             None => Rings::new(heaviest)?,
@@ -207,7 +213,7 @@ impl WetGround {
         let changes = self.weather.keys.rate().is_some();
         let sizes = changes.then(|| self.weather.rain_at(time_s).sizes()).transpose()?;
         let eye = frame_scene.origin + frame_scene.viewpoint.eye.as_dvec3();
-        let rain = RainOnWater { field, sizes: sizes.as_ref(), time_s, eye };
+        let rain = RainOnWater { field, sizes: sizes.as_ref(), time_s, eye, dripped };
         self.shown = Some(rings.find(&rain, &self.puddles, self.origin)?);
         Ok(())
     }

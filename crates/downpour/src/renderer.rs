@@ -458,7 +458,9 @@ impl Renderer {
         if let Some(ground) = &mut water.ground {
             ground.advance(&self.loaded, time_s)?;
             if let Some(field) = &field {
-                ground.find_rings(field, &frame_scene, time_s)?;
+                let dripped =
+                    if ground.has_rings() { self.shower.dripped(&frame_scene, time_s)? } else { Vec::new() };
+                ground.find_rings(field, &dripped, &frame_scene, time_s)?;
             }
         }
         if let Some(pane) = &mut water.pane {

@@ -16,7 +16,7 @@ use downpour_drop::spray::Spray;
 use downpour_sim::SimError;
 use downpour_sim::drips::Drips;
 use downpour_sim::field::{FallingDrop, RainField, VisibleDrops};
-use downpour_sim::impacts::SplashOptions;
+use downpour_sim::impacts::{Impact, SplashOptions};
 use downpour_sim::resolved::Resolved;
 use downpour_sim::shelter::Obstacles;
 use downpour_sim::simulation::Bounce;
@@ -57,11 +57,11 @@ pub struct ShowerView {
     pub pane: Option<PanePlane>,
     /// Drops that drip, splashes and droplets that rebound, unless the device finds them, in the world: these are found already.
     pub droplets: Vec<FallingDrop>,
-    /// Drops that drip, if the device finds them.
+    /// Drops that drip, and their splashes, if the device finds them.
     pub drips: Option<DripView>,
 }
 
-/// Drops that drip before a picture, for a device that finds them.
+/// Drops that drip before a picture, and their splashes, for a device that finds them.
 #[derive(Clone, Debug)]
 pub struct DripView {
     /// Where they drip.
@@ -70,6 +70,8 @@ pub struct DripView {
     pub view: View,
     /// Least diameter of a drop, pixels.
     pub least_pixels: f64,
+    /// Their splashes.
+    pub splashes: Option<SplashOptions>,
 }
 
 /// A rain whose drops a device finds.
@@ -205,7 +207,7 @@ impl Shower {
         self.splashes.map(|splashes| SplashOptions { size, ..splashes })
     }
 
-    /// Drops that drip, as a picture shows them.
+    /// Drops that drip, and their splashes, as a picture shows them.
     fn drips(
         &self,
         frame_scene: &FrameScene,
@@ -213,9 +215,10 @@ impl Shower {
         least: f64,
         time_s: f64,
     ) -> Result<Vec<FallingDrop>, ShowerError> {
-        self.dripping
-            .as_ref()
-            .map_or(Ok(Vec::new()), |dripping| dripping.visible(frame_scene, view, least, time_s))
+        let splashes = self.splashes_at(time_s);
+        let listed =
+            |dripping: &Dripping| dripping.visible(frame_scene, (view, least), time_s, splashes.as_ref());
+        self.dripping.as_ref().map_or(Ok(Vec::new()), listed)
     }
 
     /// The same for a picture whose drops a device finds: those that it is to find, or else a list.
@@ -228,17 +231,25 @@ impl Shower {
     ) -> Result<(Option<DripView>, Vec<FallingDrop>), ShowerError> {
         #[cfg(feature = "wgpu")]
         if let Some(dripping) = &self.dripping
-            && let Some(view) = dripping.of_device(frame_scene, view, least)?
+            && let Some(view) = dripping.of_device(frame_scene, (view, least), self.splashes_at(time_s))?
         {
             return Ok((Some(view), Vec::new()));
         }
         Ok((None, self.drips(frame_scene, view, least, time_s)?))
     }
 
-    /// True if drops splash, where there is rain.
+    /// Drops that have dripped near the eye of a picture and make rings on puddles.
+    ///
+    /// # Errors
+    /// As [`Shower::at`].
+    pub(crate) fn dripped(&self, frame_scene: &FrameScene, time_s: f64) -> Result<Vec<Impact>, ShowerError> {
+        self.dripping.as_ref().map_or(Ok(Vec::new()), |dripping| dripping.landed(frame_scene, time_s))
+    }
+
+    /// True if drops splash, where there is rain or something drips.
     #[must_use]
     pub fn has_splashes(&self) -> bool {
-        self.splashes.is_some() && self.law.rate_mm_h() > 0.0
+        self.splashes.is_some() && (self.law.rate_mm_h() > 0.0 || self.has_drips())
     }
 
     /// True if something may drip.

@@ -1,15 +1,16 @@
 //! Drops of points that drip. Twin: `downpour_sim::drips`.
 
 use super::field::{EYE_DROP, FIELD, FIELD_CONSTANTS};
+use super::splash::{SPLASH, SPLASH_CONSTANTS};
 use crate::common::{INVOCATION, RNG};
 use crate::drop::fall_speed::FALL_SPEED;
 use crate::{Kernel, Module};
 
 /// Every module of this file.
-pub const MODULES: &[&Module] = &[&DRIP_CONSTANTS, &DRIP];
+pub const MODULES: &[&Module] = &[&DRIP_CONSTANTS, &DRIP, &DRIP_SPLASH];
 
 /// Every kernel of this file.
-pub const KERNELS: &[&Kernel] = &[&DRIP_FIND_KERNEL];
+pub const KERNELS: &[&Kernel] = &[&DRIP_FIND_KERNEL, &DRIP_SPLASH_KERNEL];
 
 shared_constants! {
     /// Constants of points that drip.
@@ -36,6 +37,17 @@ pub static DRIP: Module = Module {
     uses: &[&FIELD_CONSTANTS, &DRIP_CONSTANTS, &EYE_DROP, &FIELD, &FALL_SPEED, &INVOCATION, &RNG],
 };
 
+/// Crowns of drops that have dripped, before an eye. Twin: `downpour_sim::drips`.
+pub static DRIP_SPLASH: Module = Module {
+    path: "sim/drip_splash.wgsl",
+    wgsl: include_str!("../../wgsl/sim/drip_splash.wgsl"),
+    uses: &[&SPLASH_CONSTANTS, &DRIP, &SPLASH],
+};
+
 /// `DRIP_LANES` invocations per point.
 pub static DRIP_FIND_KERNEL: Kernel =
     Kernel { entry: "main_drip_find", module: &DRIP, workgroup: [64, 1, 1] };
+
+/// One invocation per point.
+pub static DRIP_SPLASH_KERNEL: Kernel =
+    Kernel { entry: "main_drip_splash", module: &DRIP_SPLASH, workgroup: [64, 1, 1] };

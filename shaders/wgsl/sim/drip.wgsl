@@ -33,16 +33,18 @@ struct DripRow {
     leaving: f32,
     // Time constant with which the point runs dry after the rain, s; 0: the rain does not end.
     drain: f32,
+    // Unit normal of the surface on which a fall ends; it looks straight down where a fall ends nowhere.
+    normal: vec3f,
+    unused: u32,
 }
 
 struct DripFrame {
     // Not read: a software driver makes the kernel again for each value of the first word of a block that it reads.
     unread: u32,
-    unused_2: u32,
-    // Largest distance of a drop, m.
-    farthest: f32,
-    // Upper bound of the speed of a drop relative to the eye, m/s.
-    fastest: f32,
+    // Time of the picture (FieldTime).
+    seconds: u32,
+    fraction: u32,
+    is_before: u32,
     // Position of the eye relative to the origin of the points, m.
     eye: vec3f,
     points: u32,
@@ -50,6 +52,11 @@ struct DripFrame {
     wind: vec3f,
     // End of the rain, s from the time of the picture.
     end: f32,
+    // Largest distance of a drop, m.
+    farthest: f32,
+    // Upper bound of the speed of a drop relative to the eye, m/s.
+    fastest: f32,
+    unused: vec2u,
 }
 
 @group(0) @binding(9) var<uniform> drip_frame: DripFrame;
@@ -192,7 +199,7 @@ fn drip_point(index: u32) -> DripPoint {
     let end = select(FIELD_ALWAYS, drip_frame.end, ends);
     var count = row.left;
     if end >= 0.0 {
-        let moved = field_moved(row.units, row.shift, field_frame.seconds, field_frame.fraction, field_frame.is_before);
+        let moved = field_moved(row.units, row.shift, drip_frame.seconds, drip_frame.fraction, drip_frame.is_before);
         count = field_difference(moved, row.due);
     }
     let part = f32(count.z >> 8u) * (FIELD_FRACTION_STEP * 256.0);

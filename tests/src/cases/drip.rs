@@ -4,19 +4,23 @@ use std::sync::Arc;
 
 use downpour_drop::air::Air;
 use downpour_drop::fall_speed::{FallSpeedModel, TerminalSpeed};
+use downpour_drop::splash::{FILM_M, SplashLaw};
 use downpour_gpu::{Gpu, GpuError};
 use downpour_math::rng::{rng_pcg4d, rng_unit};
-use downpour_shaders::sim::drip::{DRIP, DRIP_FIND_KERNEL};
-use downpour_shaders::sim::field::FIELD_DRIPPED;
+use downpour_shaders::sim::drip::{DRIP, DRIP_FIND_KERNEL, DRIP_SPLASH_KERNEL};
+use downpour_shaders::sim::field::{FIELD_DRIPPED, FIELD_SPLASH};
 use downpour_sim::drips::row::{DripClock, drip_begin, drip_fall, drip_hanging, drip_number, drip_rest};
 use downpour_sim::drips::{DripOptions, DripPoint, DripRain, Drips, SetDrip};
 use downpour_sim::field::{EyeDrop, FallingDrop};
 use downpour_sim::gpu::{DripPipeline, DripSearch, FieldSearch};
+use downpour_sim::impacts::SplashOptions;
 use downpour_sim::shelter::Obstacles;
 use downpour_sim::view::View;
 use glam::{DVec3, Vec3};
 
-use super::field::{Kind, Setting, kind, listed_by, moving_words, paired, setting, steady, still};
+use super::field::{
+    Kind, Setting, crown_words, kind, listed_by, moving_words, paired, setting, steady, still,
+};
 use crate::Domain::{LogUniform, Made, Or, Uniform};
 use crate::function::Run;
 use crate::words::{Args, IntoWords as _};
@@ -148,15 +152,28 @@ fn points(origin: DVec3, wind: downpour_wind::UniformWind, end_s: f64, on_cpu: &
     Drips::new(on_cpu, &found, Some(&rain), &set, &options).expect("points")
 }
 
-/// Drops of points as both sides list them.
-fn dripping_case(gpu: &Gpu, kind: Kind, end_s: f64) -> Result<Run, GpuError> {
+/// Drops of points, and their crowns, as both sides list them: the CPU's first.
+struct Listed {
+    drops: [Vec<EyeDrop>; 2],
+    crowns: [Vec<EyeDrop>; 2],
+}
+
+fn listed(gpu: &Gpu, kind: Kind, end_s: f64, pixel_angle: Option<f64>) -> Result<Listed, GpuError> {
     let Setting { field, view, scene, origin } = setting(kind);
+    let view = View { pixel_angle: pixel_angle.unwrap_or(view.pixel_angle), ..view };
     let on_cpu = Obstacles { nodes: &scene.nodes, triangles: &scene.triangles, holes: None, origin };
     let drips = Arc::new(points(origin, (kind.wind)(), end_s, &on_cpu));
     let least_pixels = 0.3;
+    let splashes = SplashOptions { law: SplashLaw::new(FILM_M, 20.0).expect("a law"), size: 1.5 };
     let of_drips = View { max_drops: 1 << 18, ..view };
     let on_device = DripPipeline::new(gpu)?.upload(&drips)?.expect("a steady wind");
-    let of_search = DripSearch { drips: &on_device, view: &of_drips, least_pixels, time_s: kind.time_s };
+    let of_search = DripSearch {
+        drips: &on_device,
+        view: &of_drips,
+        least_pixels,
+        time_s: kind.time_s,
+        splashes: Some(&splashes),
+    };
     let search = FieldSearch {
         view: &View { far: 3.0, ..view },
         time_s: kind.time_s,
@@ -167,21 +184,39 @@ fn dripping_case(gpu: &Gpu, kind: Kind, end_s: f64) -> Result<Run, GpuError> {
         splashes: None,
         bounce: None,
     };
-    let (mut drops, _) = listed_by(gpu, &field, (&scene, false, origin), &search)?;
-    drops.retain(|drop| drop.speed.to_bits() == FIELD_DRIPPED.to_bits());
+    let (found, _) = listed_by(gpu, &field, (&scene, false, origin), &search)?;
+    let dripped = |drop: &&EyeDrop| drop.speed.to_bits() == FIELD_DRIPPED.to_bits();
     let outside = |drop: FallingDrop| match kind.pane {
         Some([x, y, z, distance]) => drop.beyond(Vec3::new(x, y, z), distance, &view),
         None => Some(drop),
     };
-    let listed = drips.visible(&on_cpu, &of_drips, least_pixels, kind.time_s).expect("in range");
-    let expected: Vec<EyeDrop> =
-        listed.into_iter().filter_map(outside).map(|drop| EyeDrop::new(&drop, view.eye)).collect();
+    let expected = drips.visible(&on_cpu, &of_drips, least_pixels, kind.time_s).expect("in range");
+    let crowns = drips.splashes(&on_cpu, &of_drips, kind.time_s, &splashes).expect("in range");
+    let on_cpu = |all: Vec<FallingDrop>| -> Vec<EyeDrop> {
+        all.into_iter().filter_map(outside).map(|drop| EyeDrop::new(&drop, view.eye)).collect()
+    };
+    Ok(Listed {
+        drops: [on_cpu(expected), found.iter().filter(dripped).copied().collect()],
+        crowns: [on_cpu(crowns), found.iter().filter(|drop| drop.speed <= FIELD_SPLASH).copied().collect()],
+    })
+}
+
+/// Drops of points as both sides list them.
+fn dripping_case(gpu: &Gpu, kind: Kind, end_s: f64) -> Result<Run, GpuError> {
+    let [expected, found] = listed(gpu, kind, end_s, None)?.drops;
     assert!(expected.len() > 400, "{} drops", expected.len());
     let hang = expected.iter().filter(|drop| drop.velocity == [0.0; 3]).count();
     assert!((100..expected.len() - 100).contains(&hang), "{hang} of {} hang", expected.len());
     let finite = |time: f32| time.clamp(-9.0, 9.0);
     let words = |drop: &EyeDrop| moving_words(drop, finite);
-    Ok(paired(&expected, &drops, words))
+    Ok(paired(&expected, &found, words))
+}
+
+/// Crowns of drops that have dripped, as both sides list them.
+fn crowns_case(gpu: &Gpu, kind: Kind, end_s: f64) -> Result<Run, GpuError> {
+    let [expected, found] = listed(gpu, kind, end_s, Some(2.0e-4))?.crowns;
+    assert!(expected.len() > 60, "{} crowns", expected.len());
+    Ok(paired(&expected, &found, crown_words))
 }
 
 /// The cases.
@@ -192,6 +227,10 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         KernelCase::new(name, &DRIP_FIND_KERNEL, tol.with_outliers(2.0e-3), run)
     };
     const FOREVER: f64 = f64::INFINITY;
+    let crowns = |name, wander: f64, run: fn(&Gpu) -> Result<Run, GpuError>| {
+        let tol = Tol::absolute(wander, "meters and seconds; crowns at an edge, and as they begin and end");
+        KernelCase::new(name, &DRIP_SPLASH_KERNEL, tol.with_outliers(6.0e-3), run)
+    };
     vec![
         of("main_drip_find: steady wind", 2.0e-5, |gpu| {
             dripping_case(gpu, kind(steady, 7.125, 1.0 / 60.0), FOREVER)
@@ -209,6 +248,16 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         }),
         of("main_drip_find: as the rain ends, a long exposure", 5.0e-4, |gpu| {
             dripping_case(gpu, kind(steady, 3.3, 0.25), 3.25)
+        }),
+        crowns("main_drip_splash: steady wind", 2.0e-5, |gpu| {
+            crowns_case(gpu, kind(steady, 7.125, 1.0 / 60.0), FOREVER)
+        }),
+        crowns("main_drip_splash: still air, far away and late", 2.0e-5, |gpu| {
+            crowns_case(gpu, Kind { far: true, ..kind(still, 987_654.321, 0.02) }, FOREVER)
+        }),
+        crowns("main_drip_splash: as the rain ends, behind a pane", 5.0e-4, |gpu| {
+            let pane = Some([0.0, 0.6, -0.8, 0.5]);
+            crowns_case(gpu, Kind { pane, ..kind(steady, 3.3, 1.0 / 60.0) }, 2.25)
         }),
     ]
 }

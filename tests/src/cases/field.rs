@@ -477,12 +477,14 @@ fn crowns_case(gpu: &Gpu, kind: Kind) -> Result<Run, GpuError> {
     };
     let (mut drops, _) = listed_by(gpu, &field, (&scene, kind.has_holes, origin), &search)?;
     drops.retain(|drop| drop.speed <= FIELD_SPLASH);
-    let words = |drop: &EyeDrop| {
-        let [x, y, z] = drop.offset;
-        let [begin, end] = drop.present;
-        [1.0, x, y, z, drop.diameter * 10.0, begin, end].map(f32::to_bits)
-    };
-    Ok(paired(&expected, &drops, words))
+    Ok(paired(&expected, &drops, crown_words))
+}
+
+/// Words of a crown, for a comparison in meters and seconds.
+pub(super) fn crown_words(drop: &EyeDrop) -> [u32; 7] {
+    let [x, y, z] = drop.offset;
+    let [begin, end] = drop.present;
+    [1.0, x, y, z, drop.diameter * 10.0, begin, end].map(f32::to_bits)
 }
 
 /// The drops that the device lists for a search, and the least size in pixels that is listed.

@@ -187,7 +187,7 @@ fn case_rings(gpu: &Gpu) -> Result<Run, GpuError> {
     let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 60.0).expect("a rain");
     let field = Arc::new(RainField::new(&rain, 3).expect("a rain"));
     let eye = Vec3::new(0.05, 0.19, 0.14);
-    let on_water = RainOnWater { field: &field, sizes: None, time_s: 2.3, eye: eye.as_dvec3() };
+    let on_water = RainOnWater { field: &field, sizes: None, time_s: 2.3, eye: eye.as_dvec3(), dripped: &[] };
     let rings = Rings::new(&rain).and_then(|mut rings| rings.find(&on_water, &puddles, DVec3::ZERO));
     let rings = rings.expect("rings");
     water_with(gpu, builder.build(&sky), &puddles, eye, 1, (Some(&rings), &[]))

@@ -8,6 +8,8 @@ use downpour_shaders::sim::drip::{DRIP_DROP, DRIP_HANGS, DRIP_JITTER, DRIP_MARGI
 use downpour_shaders::sim::field::FIELD_ALWAYS;
 use downpour_wind::UniformWind;
 use glam::DVec3;
+#[cfg(feature = "wgpu")]
+use glam::Vec3;
 
 use super::clock::{Clock, DripRain};
 use super::fall::{Fall, Landing, MAX_FALL_S};
@@ -150,6 +152,17 @@ impl Emitter {
         if self.is_jet { self.diameter } else { self.hanging.hanging_diameter(1.0) }
     }
 
+    /// Diameter of the drops that fall, m, and upper bound of their speed in still air, m/s.
+    pub(super) fn falling(&self) -> [f64; 2] {
+        [self.diameter, self.terminal]
+    }
+
+    /// Drops per second while it rains.
+    #[cfg(feature = "wgpu")]
+    pub(super) fn per_s(&self) -> f64 {
+        self.clock.per_s()
+    }
+
     /// Middle and radius of a ball that holds its drops, where an unsteady wind blows at up to `reach` m/s.
     pub(super) fn around(&self, reach: f64) -> (DVec3, f64) {
         let middle = self.position.midpoint(self.end);
@@ -185,6 +198,8 @@ impl Emitter {
             hanging: if self.is_jet { 0.0 } else { cube(whole) },
             leaving: cube(self.hanging.diameter_m),
             drain: end.map_or(0.0, |[.., drain_s]| drain_s as f32),
+            normal: self.landing.and_then(|landing| landing.normal).unwrap_or(Vec3::NEG_Y),
+            unused: 0,
         }
     }
 

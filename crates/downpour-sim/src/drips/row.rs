@@ -43,6 +43,10 @@ pub struct DripRow {
     pub leaving: f32,
     /// Time constant with which the point runs dry after the rain, s; 0: the rain does not end.
     pub drain: f32,
+    /// Unit normal of the surface on which a fall ends; it looks straight down where a fall ends nowhere.
+    pub normal: Vec3,
+    /// 0.
+    pub unused: u32,
 }
 
 /// Uniforms of the search for the drops of points.
@@ -51,12 +55,12 @@ pub struct DripRow {
 pub struct DripFrame {
     /// Not read: a software driver makes the kernel again for each value of the first word of a block that it reads.
     pub unread: u32,
-    /// 0.
-    pub unused_2: u32,
-    /// Largest distance of a drop, m.
-    pub farthest: f32,
-    /// Upper bound of the speed of a drop relative to the eye, m/s.
-    pub fastest: f32,
+    /// Whole seconds of the time of the picture ([`FieldTime`](crate::field::FieldTime)).
+    pub seconds: u32,
+    /// See `seconds`.
+    pub fraction: u32,
+    /// See `seconds`.
+    pub is_before: u32,
     /// Position of the eye relative to the origin of the points, m.
     pub eye: Vec3,
     /// Number of points.
@@ -65,6 +69,12 @@ pub struct DripFrame {
     pub wind: Vec3,
     /// End of the rain, s from the time of the picture.
     pub end: f32,
+    /// Largest distance of a drop, m.
+    pub farthest: f32,
+    /// Upper bound of the speed of a drop relative to the eye, m/s.
+    pub fastest: f32,
+    /// 0.
+    pub unused: [u32; 2],
 }
 
 /// Number of drops of a point by time: it rises with the rain, and after it by a part that decays.

@@ -6,6 +6,9 @@ use glam::{DVec3, Vec3};
 use super::Drips;
 use super::emitter::Emitter;
 use super::row::{DripFrame, DripRow};
+use crate::field::chain::FieldTime;
+use crate::impacts::SplashOptions;
+use crate::impacts::splashes::MAX_CROWN_S;
 use crate::view::{View, within};
 
 /// Edge of a cell, m.
@@ -37,14 +40,20 @@ struct DripCell {
     largest: f64,
     /// Upper bound of the number of drops in an exposure: at an instant, and per second of half its time.
     most: [f64; 2],
+    /// Upper bounds of the diameter of what falls, m, and of its speed in still air, m/s.
+    falling: [f64; 2],
+    /// Drops per second.
+    per_s: f64,
 }
 
 /// Drops of points that a picture may show.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DripQuery {
     pub(crate) frame: DripFrame,
-    /// Places that hold all drops.
+    /// Places that hold all drops and their crowns.
     pub(crate) room: u32,
+    /// True if there may be crowns.
+    pub(crate) has_crowns: bool,
 }
 
 impl DripTable {
@@ -64,12 +73,16 @@ impl DripTable {
         let rows = order.iter().map(|(emitter, _)| emitter.row(origin)).collect();
         let cells = order.chunk_by(|(_, a), (_, b)| cell_of(a.0) == cell_of(b.0)).map(|points| {
             let middle = points.iter().map(|(_, ball)| ball.0).sum::<DVec3>() / points.len() as f64;
-            let mut cell = DripCell { middle, radius: 0.0, largest: 0.0, most: [0.0; 2] };
+            let mut cell =
+                DripCell { middle, radius: 0.0, largest: 0.0, most: [0.0; 2], falling: [0.0; 2], per_s: 0.0 };
             for (emitter, (at, radius)) in points {
                 cell.radius = cell.radius.max(at.distance(middle) + radius);
                 cell.largest = cell.largest.max(emitter.largest());
                 let most = emitter.most();
                 cell.most = [cell.most[0] + most[0], cell.most[1] + most[1]];
+                let [diameter, speed] = emitter.falling();
+                cell.falling = [cell.falling[0].max(diameter), cell.falling[1].max(speed)];
+                cell.per_s += emitter.per_s();
             }
             cell
         });
@@ -81,8 +94,15 @@ impl DripTable {
         &self.rows
     }
 
-    /// Asks for the drops of a picture at a time in seconds in as much room as `view.max_drops`: where more might be, for the nearest.
-    pub(crate) fn query(&self, view: &View, least_pixels: f64, time_s: f64) -> DripQuery {
+    /// Asks for the drops of a picture at a time in seconds in as much room as `view.max_drops`: where more might be, for the nearest. And
+    /// for their crowns, with splashes.
+    pub(crate) fn query(
+        &self,
+        view: &View,
+        least_pixels: f64,
+        time_s: f64,
+        splashes: Option<&SplashOptions>,
+    ) -> DripQuery {
         let half = 0.5 * view.shutter_s;
         let fastest = view.velocity.length() + MAX_FALL_M_S;
         let swept = view.swept_sides();
@@ -104,16 +124,38 @@ impl DripTable {
             }
             room += most;
         }
+        let crowns = splashes.map_or(0.0, |splashes| self.crowns(view, splashes));
+        let time = FieldTime::new(time_s);
         let frame = DripFrame {
+            unread: 0,
+            seconds: time.seconds,
+            fraction: time.fraction,
+            is_before: time.is_before,
             eye: (view.eye - self.origin).as_vec3(),
             points: self.rows.len() as u32,
             wind: self.wind,
             end: (self.end_s - time_s).min(FIELD_ALWAYS.into()) as f32,
             farthest: farthest as f32,
             fastest: fastest as f32,
-            unread: 0,
-            unused_2: 0,
+            unused: [0; 2],
         };
-        DripQuery { frame, room: room as u32 }
+        DripQuery { frame, room: (room + crowns) as u32, has_crowns: crowns > 0.0 }
+    }
+
+    /// Room for the crowns of a picture.
+    fn crowns(&self, view: &View, splashes: &SplashOptions) -> f64 {
+        let sides = view.sides();
+        let wind = f64::from(self.wind.length());
+        let per_s = |cell: &DripCell| {
+            let [diameter, speed] = cell.falling;
+            let (crown, range) = splashes.largest_crown(view, diameter, speed + wind)?;
+            let offset = cell.middle - view.eye;
+            let is_shown = offset.length() - cell.radius - crown <= range
+                && within(&sides, offset, cell.radius + 1.5 * crown);
+            is_shown.then_some(cell.per_s)
+        };
+        let landed: f64 = self.cells.iter().filter_map(per_s).sum::<f64>() * MAX_CROWN_S;
+        // Points drip each at its own times: 8 standard deviations more than their mean do not come.
+        if landed > 0.0 { (landed + 8.0 * landed.sqrt()).ceil() + 16.0 } else { 0.0 }
     }
 }

@@ -146,8 +146,8 @@ pub struct FieldPass<'a> {
     splashes: Vec<(Search<'a>, wgpu::BindGroup, [u32; 3])>,
     /// Of the search for droplets: a kernel for each stage, or none.
     bounces: Vec<BoundKernel<'a>>,
-    /// The search for drops that drip.
-    drips: Option<BoundKernel<'a>>,
+    /// The search for drops that drip, and for their crowns.
+    drips: Vec<BoundKernel<'a>>,
     list: DropListOnGpu,
     resolved: Resolved,
     columns: u32,
@@ -283,7 +283,7 @@ impl FieldPipeline {
             _ => Vec::new(),
         };
         on.forget_far_from(search.time_s);
-        let (pipeline, search, drips) = (self, of_picture, drips.transpose()?);
+        let (pipeline, search, drips) = (self, of_picture, drips.transpose()?.unwrap_or_default());
         Ok(FieldPass { pipeline, search, splashes, bounces, drips, list, resolved, columns })
     }
 

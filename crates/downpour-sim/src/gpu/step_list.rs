@@ -123,7 +123,7 @@ impl StepListKernels {
             finders.push((kernel, bindings, workgroups_for(SPANS as u32 * max_kept)));
         }
         if let Some((drips, query)) = dripping.filter(|(_, query)| query.room > 0) {
-            finders.push(drips.prepare(buffers, &query, &list, picture.pane)?);
+            finders.extend(drips.prepare(buffers, &query, &list, picture.pane)?);
         }
         let kernel = made_once(&self.clear, || ComputeKernel::new(gpu, &STEP_LIST_CLEAR_KERNEL, &[]))?;
         let frame = buffers.uniform("step list frame", &frame)?;

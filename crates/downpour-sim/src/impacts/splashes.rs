@@ -24,13 +24,13 @@ const SPLASH: u64 = (SPLASH_HIGH as u64) << 32 | SPLASH_LOW as u64;
 const SIZES: [f64; 2] = [SPLASH_MIN_SIZE as f64, SPLASH_MAX_SIZE as f64];
 
 /// Crowns are drawn from this width on the picture on, in pixels: below, they are no more than the texture of the ground.
-pub(super) const MIN_PIXELS: f64 = 3.0;
+pub(crate) const MIN_PIXELS: f64 = 3.0;
 
 /// Least vertical component of the normal of a surface on which crowns stand: none hang from what looks down.
 const LEVEL: f32 = SPLASH_LEVEL;
 
 /// Longest duration of a crown, s: that of a drop of 5 mm at terminal speed.
-const MAX_CROWN_S: f64 = SPLASH_MAX_S as f64;
+pub(crate) const MAX_CROWN_S: f64 = SPLASH_MAX_S as f64;
 
 /// Largest number of crowns of a picture.
 const MAX_COUNT: usize = 65_536;
@@ -61,14 +61,11 @@ impl RainField {
     ) -> Result<Vec<FallingDrop>, SimError> {
         view.check()?;
         check_time(time_s)?;
-        in_range("size of splashes", options.size, "", &(0.1..=10.0), 1.0, "0.1 to 10")?;
+        options.check()?;
         let sides = view.sides();
         // The wind adds to the speed of a drop toward a slope.
         let wind = self.wind.velocity(time_s).length();
-        let reach = |diameter: f64, speed: f64| {
-            let radius = options.law.splash(diameter, speed + wind)?.radius_m * options.size * SIZES[1];
-            Some((radius, view.range(2.0 * radius, MIN_PIXELS)))
-        };
+        let reach = |diameter: f64, speed: f64| options.largest_crown(view, diameter, speed + wind);
         let of_class = |class: &Class| {
             let (radius, range) = reach(class.largest, class.speeds[1])?;
             let shown = move |(middle, half): (DVec3, f64), radius: f64, range: f64| {
@@ -85,18 +82,36 @@ impl RainField {
         let span_s = [time_s - MAX_CROWN_S, time_s];
         let crown = |impact: &Impact| options.crown(impact, view, time_s);
         let mut places = Places::new(obstacles, LEVEL);
-        let mut crowns = self.impacts_of(&Facets::new(obstacles), &mut places, span_s, of_class, crown)?;
-        if crowns.len() > MAX_COUNT {
-            crowns.sort_by(|a, b| b.diameter.total_cmp(&a.diameter).then(a.id.cmp(&b.id)));
-            crowns.truncate(MAX_COUNT);
-        }
-        Ok(crowns)
+        let crowns = self.impacts_of(&Facets::new(obstacles), &mut places, span_s, of_class, crown)?;
+        Ok(largest(crowns))
     }
 }
 
+/// The largest crowns, as many as a picture may have.
+pub(crate) fn largest(mut crowns: Vec<FallingDrop>) -> Vec<FallingDrop> {
+    if crowns.len() > MAX_COUNT {
+        crowns.sort_by(|a, b| b.diameter.total_cmp(&a.diameter).then(a.id.cmp(&b.id)));
+        crowns.truncate(MAX_COUNT);
+    }
+    crowns
+}
+
 impl SplashOptions {
+    /// Checks that the size is 0.1 to 10.
+    pub(crate) fn check(&self) -> Result<(), SimError> {
+        in_range("size of splashes", self.size, "", &(0.1..=10.0), 1.0, "0.1 to 10")?;
+        Ok(())
+    }
+
+    /// Radius of the largest crown of a drop of a diameter in m that meets a surface at a speed in m/s, and the distance up to which a
+    /// picture shows it, m; `None` if it does not splash.
+    pub(crate) fn largest_crown(&self, view: &View, diameter: f64, speed: f64) -> Option<(f64, f64)> {
+        let radius = self.law.splash(diameter, speed)?.radius_m * self.size * SIZES[1];
+        Some((radius, view.range(2.0 * radius, MIN_PIXELS)))
+    }
+
     /// Crown of an impact at a time in s, if there is one and the picture shows it.
-    fn crown(&self, impact: &Impact, view: &View, time_s: f64) -> Option<FallingDrop> {
+    pub(crate) fn crown(&self, impact: &Impact, view: &View, time_s: f64) -> Option<FallingDrop> {
         let age_s = time_s - impact.time_s;
         let toward = -f64::from(impact.velocity.dot(impact.normal));
         let Splash { radius_m, duration_s } = self.law.splash(impact.diameter.into(), toward)?;

@@ -18,11 +18,12 @@ use downpour_shaders::render::puddle_rings::{
     PUDDLE_RINGS_SIZES, PUDDLE_RINGS_TIME, PUDDLE_RINGS_TIMES,
 };
 use downpour_sim::field::RainField;
+use downpour_sim::impacts::Impact as Dripped;
 use glam::{DVec3, Vec2, Vec3};
 use half::f16;
 use rayon::prelude::*;
 
-use super::map::{Ground, PuddleMap};
+use super::map::{Ground, PuddleMap, turned};
 use super::ring_drops::{Impact, RingDrops};
 use super::ripples::{MEMORY_S, options};
 use super::{PuddleError, PuddleLook};
@@ -48,6 +49,9 @@ const BINS: u32 = 32;
 
 /// Smallest drop with a ring, m.
 const MIN_DIAMETER_M: f64 = 1.5e-3;
+
+/// A drop that has landed no farther than this above the water of a puddle or below its ground has landed in it, m.
+const ABOVE_WATER_M: f32 = 0.03;
 
 /// Drops of some diameter, with the integrals over time of their squared slope, m^2 s: of all of it, and of that of a ring.
 #[derive(Clone, Copy, Debug)]
@@ -77,6 +81,7 @@ pub struct Rings {
     smallest: f64,
     slopes: Arc<[[u32; 4]]>,
     drops: RingDrops,
+    law: TerminalSpeed,
 }
 
 /// The rain on the water of a picture.
@@ -90,6 +95,8 @@ pub struct RainOnWater<'a> {
     pub time_s: f64,
     /// Eye, m in the world.
     pub eye: DVec3,
+    /// Drops that have dripped near the eye: [`Rings::asked`].
+    pub dripped: &'a [Dripped],
 }
 
 /// Rings of a picture, as rows of the scene's table.
@@ -172,7 +179,14 @@ impl Rings {
         let smallest = smallest_of(&bins, heaviest, EXPECTED_IN_CELL / area).max(MIN_DIAMETER_M);
         let slopes = slopes(&law, smallest)?.into();
         let drops = RingDrops::new([smallest, DIAMETERS_M[1]]);
-        Ok(Self { heaviest: heaviest.clone(), bins, smallest, slopes, drops })
+        Ok(Self { heaviest: heaviest.clone(), bins, smallest, slopes, drops, law })
+    }
+
+    /// Corners of the box, m in the world, and span of time, s, in which drops that drip make rings of a picture.
+    #[must_use]
+    pub fn asked(eye: DVec3, time_s: f64) -> ([DVec3; 2], [f64; 2]) {
+        let reach = DVec3::splat(REACH_M + f64::from(PUDDLE_RINGS_CELL));
+        ([eye - reach, eye + reach], [time_s - f64::from(PUDDLE_RINGS_LIFE), time_s])
     }
 
     /// Finds the rings of a picture on puddles whose positions are relative to `origin`.
@@ -201,13 +215,48 @@ impl Rings {
         let mut known =
             IdSet::with_capacity_and_hasher(if overlap { MAX_RINGS } else { 0 }, IdHash::default());
         let mut placed: Vec<Placed> = Vec::with_capacity(MAX_RINGS);
-        for impact in self.drops.impacts().filter(|impact| f64::from(impact.diameter) >= smallest) {
+        let dripped: Vec<Impact> = with_rings()
+            .flat_map(|(map, _)| rain.dripped.iter().filter_map(|drop| self.dripped(drop, map, origin)))
+            .collect();
+        let all = self.drops.impacts().chain(&dripped);
+        for impact in all.filter(|impact| f64::from(impact.diameter) >= smallest) {
             let ring = placed_ring(impact, &placing);
             placed.extend(ring.filter(|_| !overlap || known.insert(impact.id)));
         }
         let (cells, rings) = binned(&placed);
         let part = self.part(rain.sizes.unwrap_or(&self.heaviest), smallest);
         Ok(RingRows { slopes: Arc::clone(&self.slopes), cells, rings, part, corner, middle })
+    }
+
+    /// A drop that has dripped, as it meets the water of a map; `None` if it does not, or if its ring is too small. Its ring is that of a drop
+    /// of the rain with the same energy.
+    fn dripped(&self, drop: &Dripped, map: &PuddleMap, origin: DVec3) -> Option<Impact> {
+        let at = (drop.position - origin).as_vec3();
+        let water = map.water_at(map.place(turned(map.ground.turn), at))?;
+        // It has landed on the ground below the water, and not on what stands above it.
+        let deep = map.ground.middle.y + water.level - at.y;
+        if !(-ABOVE_WATER_M..water.depth + ABOVE_WATER_M).contains(&deep) {
+            return None;
+        }
+        let mut diameter = f64::from(drop.diameter);
+        let energy = diameter * diameter * diameter * f64::from(drop.velocity.length_squared());
+        // Terminal speeds change slowly with the diameter: each round has a third of the error before it.
+        for _ in 0..8 {
+            let speed = self.law.at(diameter.clamp(DIAMETERS_M[0], DIAMETERS_M[1])).ok()?;
+            diameter = ops::cbrt(energy / (speed * speed));
+        }
+        let diameter = diameter.min(DIAMETERS_M[1]);
+        let size = (ops::ln(diameter / self.smallest) / ops::ln(DIAMETERS_M[1] / self.smallest)) as f32;
+        let ago_s = deep.max(0.0) / (-drop.velocity.y).max(0.1);
+        (diameter >= self.smallest).then_some(Impact {
+            at: Vec2::new(at.x, at.z),
+            drift: water.velocity,
+            time_s: drop.time_s,
+            ago_s,
+            diameter: diameter as f32,
+            size,
+            id: drop.id,
+        })
     }
 
     /// Part of the mean square of the slope of a rain's ripples that rings of drops from a diameter on have.
@@ -379,7 +428,7 @@ mod tests {
     }
 
     fn on_water(field: &Arc<RainField>, time_s: f64) -> RainOnWater<'_> {
-        RainOnWater { field, sizes: None, time_s, eye: DVec3::new(1.0, 1.8, 0.0) }
+        RainOnWater { field, sizes: None, time_s, eye: DVec3::new(1.0, 1.8, 0.0), dripped: &[] }
     }
 
     /// A picture of a clip has the rings that it has alone, also where the water has risen in between.
@@ -404,7 +453,7 @@ mod tests {
             let time_s = 5.0 + f64::from(frame) / 30.0;
             let now = if frame < 17 { before.clone() } else { puddles(usize::from(frame)) };
             let eye = origin + DVec3::new(1.0 + 0.3 * f64::from(frame), 1.8, 0.0);
-            let picture = RainOnWater { field: &field, sizes: None, time_s, eye };
+            let picture = RainOnWater { field: &field, sizes: None, time_s, eye, dripped: &[] };
             let rings = clip.find(&picture, &now, origin).unwrap();
             if frame % 3 == 1 {
                 let alone = Rings::new(&law).unwrap().find(&picture, &now, origin).unwrap();
@@ -452,6 +501,61 @@ mod tests {
             );
             assert!((ratio / part - 1.0).abs() < 0.2, "{rate}: {ratio}, {part}");
         }
+    }
+
+    /// A drop that drips has the ring of a drop of its energy, where it lands in the water: not above it, and not if it is too slow.
+    #[test]
+    fn drops_that_drip_have_rings() {
+        let law = rain(20.0);
+        let field = Arc::new(RainField::new(&law, SEED).unwrap());
+        let mut rings = Rings::new(&law).unwrap();
+        let (time_s, origin) = (4.3, DVec3::new(500.0, 10.0, -300.0));
+        let (map, look) = pool();
+        let puddles = [(map, look)];
+        let landed = |position: DVec3, speed: f32, age_s: f64| Dripped {
+            position: position + origin,
+            normal: Vec3::Y,
+            velocity: Vec3::NEG_Y * speed,
+            diameter: 5.0e-3,
+            id: 7,
+            time_s: time_s - age_s,
+        };
+        let at = DVec3::new(2.5, 0.2, -2.0);
+        let dripped = [landed(at, 6.0, 0.1)];
+        let mut of = |dripped: &[Dripped]| {
+            let eye = DVec3::new(1.0, 1.8, 0.0) + origin;
+            let picture = RainOnWater { field: &field, sizes: None, time_s, eye, dripped };
+            rings.find(&picture, &puddles, origin).unwrap()
+        };
+        let [without, with] = [of(&[]), of(&dripped)];
+        assert_eq!(with.count(), without.count() + 1);
+        let of_cell = |rows: &RingRows, cell: usize| {
+            rows.rings[rows.cells[cell] as usize..rows.cells[cell + 1] as usize].to_vec()
+        };
+        let cell = (0..CELLS * CELLS).find(|&cell| of_cell(&with, cell) != of_cell(&without, cell)).unwrap();
+        let old = of_cell(&without, cell);
+        let [place, words] = of_cell(&with, cell).into_iter().find(|ring| !old.contains(ring)).unwrap();
+        let halves = |word: u32| [word & 0xffff, word >> 16].map(|part| part as f32 / 65536.0);
+        let corner = Vec2::new((cell % CELLS) as f32, (cell / CELLS) as f32);
+        let place = with.corner + (corner + Vec2::from(halves(place))) * PUDDLE_RINGS_CELL;
+        let [age, size] = halves(words);
+        assert!(place.distance(Vec2::new(2.5, -2.0)) < 1.0e-4, "{place}");
+        // 1 cm of water take a drop of 6 m/s less than 2 ms.
+        let expected = (0.1 + 0.01 / 6.0) / PUDDLE_RINGS_LIFE;
+        assert!((age - expected).abs() < 1.0e-3 && age < expected + 1.0e-4, "{age} and {expected}");
+        // A drop at terminal speed of 5 mm falls at 9.1 m/s; one of the same energy as here is smaller.
+        let of_size = |diameter: f64| {
+            (ops::ln(diameter / rings.smallest) / ops::ln(DIAMETERS_M[1] / rings.smallest)) as f32
+        };
+        assert!(size < of_size(4.6e-3) && size > of_size(3.6e-3), "{size}");
+        let has_ring = |position: DVec3, speed: f32| {
+            rings.dripped(&landed(position, speed, 0.1), &puddles[0].0, origin).is_some()
+        };
+        assert!(has_ring(at, 6.0));
+        assert!(!has_ring(at + DVec3::Y, 6.0), "on a roof");
+        assert!(!has_ring(at - DVec3::Y * 0.2, 6.0), "in a cellar");
+        assert!(!has_ring(at + DVec3::X * 40.0, 6.0), "on land");
+        assert!(!has_ring(at, 0.3), "too slow");
     }
 
     /// A ring is where its drop comes through the water, if rain gets there, and is once where puddles overlap.

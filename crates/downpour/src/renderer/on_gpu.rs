@@ -173,8 +173,9 @@ impl OnGpu {
         self.follow_drips(&mut kept_drips, shown)?;
         let drips = shown.drips.as_ref().zip(kept_drips.as_ref());
         let drips = drips.map(|(shown_drips, drips)| {
-            let DripView { view, least_pixels, .. } = shown_drips;
-            DripSearch { drips, view, least_pixels: *least_pixels, time_s: shown.time_s }
+            let DripView { view, least_pixels, splashes, .. } = shown_drips;
+            let (least_pixels, splashes) = (*least_pixels, splashes.as_ref());
+            DripSearch { drips, view, least_pixels, time_s: shown.time_s, splashes }
         });
         let pane = shown.pane.map(|pane| pane.outward.extend(pane.distance).to_array());
         let max_room = self.renderer.max_drops();

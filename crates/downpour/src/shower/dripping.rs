@@ -6,10 +6,12 @@ use downpour_drop::drip::{BROAD_RADIUS_M, Drip};
 use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_sim::drips::{DripOptions, DripPoints, DripRain, DripRegion, Drips, SetDrip};
 use downpour_sim::field::FallingDrop;
+use downpour_sim::impacts::{Impact, SplashOptions};
 use downpour_sim::shelter::Obstacles;
 use downpour_sim::view::View;
 use downpour_trace::data::SceneData;
 use downpour_trace::frame_scene::FrameScene;
+use downpour_trace::puddle::Rings;
 use downpour_weather::{RAINED_S, Weather};
 use glam::DVec3;
 
@@ -71,30 +73,43 @@ impl Dripping {
         Ok(())
     }
 
-    /// The drips that a picture shows at a time in seconds.
+    /// The drips that a picture shows at a time in seconds, from so many pixels on, and their splashes.
     pub(super) fn visible(
         &self,
         frame_scene: &FrameScene,
-        view: &View,
-        least_pixels: f64,
+        (view, least_pixels): (&View, f64),
         time_s: f64,
+        splashes: Option<&SplashOptions>,
     ) -> Result<Vec<FallingDrop>, ShowerError> {
         let view = View { max_drops: view.max_drops.min(MAX_LISTED), ..*view };
         let obstacles = super::obstacles(frame_scene);
-        Ok(self.drips(frame_scene)?.visible(&obstacles, &view, least_pixels, time_s)?)
+        let drips = self.drips(frame_scene)?;
+        let mut drops = drips.visible(&obstacles, &view, least_pixels, time_s)?;
+        if let Some(splashes) = splashes {
+            drops.extend(drips.splashes(&obstacles, &view, time_s, splashes)?);
+        }
+        Ok(drops)
     }
 
-    /// The drips that a device finds for a picture; `None` where it cannot.
+    /// Those that have landed near the eye of a picture and make rings on puddles.
+    pub(super) fn landed(&self, frame_scene: &FrameScene, time_s: f64) -> Result<Vec<Impact>, ShowerError> {
+        let eye = frame_scene.origin + frame_scene.viewpoint.eye.as_dvec3();
+        let ([low, high], span_s) = Rings::asked(eye, time_s);
+        let obstacles = super::obstacles(frame_scene);
+        Ok(self.drips(frame_scene)?.impacts(&obstacles, low, high, span_s, 0.0)?)
+    }
+
+    /// The drips that a device finds for a picture, from so many pixels on, and their splashes; `None` where it cannot.
     #[cfg(feature = "wgpu")]
     pub(super) fn of_device(
         &self,
         frame_scene: &FrameScene,
-        view: &View,
-        least_pixels: f64,
+        (view, least_pixels): (&View, f64),
+        splashes: Option<SplashOptions>,
     ) -> Result<Option<DripView>, ShowerError> {
         let view = View { max_drops: view.max_drops.min(MAX_LISTED), ..*view };
         let drips = Some(self.drips(frame_scene)?).filter(|drips| drips.fits_device());
-        Ok(drips.map(|drips| DripView { drips, view, least_pixels }))
+        Ok(drips.map(|drips| DripView { drips, view, least_pixels, splashes }))
     }
 
     /// The drips near the eye of a frame, in the scene that was seen first.
