@@ -34,27 +34,27 @@ fn traced_words(random: [u32; 4]) -> Vec<u32> {
     let radius = shape.equivalent_radius();
     let wide = shape.max_half_width() / radius;
     let tall = 0.5 * (shape.extent_up() + shape.extent_down()) / radius;
-    let mut words: Vec<u32> = shape.coefficients().iter().map(|&c| (c as f32).to_bits()).collect();
+    let bits = |c: f64| (c as f32).to_bits();
+    let mut words = vec![SIZE];
+    words.extend([0.02, 1.0 / (wide * wide), 1.0 / (tall * tall)].map(bits));
+    words.extend(shape.coefficients().map(bits));
     words.push(0);
-    words.extend(up.map(|c| (c as f32).to_bits()));
-    let rest = [1.333, 1.0 / (wide * wide), 1.0 / (tall * tall), 0.02];
-    words.extend(rest.map(|c: f64| (c as f32).to_bits()));
-    words.push(SIZE);
+    words.extend(up.map(bits));
+    words.push(bits(1.333));
     words
 }
 
 /// The same for pixels of 0.3.
 fn coarse_words(random: [u32; 4]) -> Vec<u32> {
     let mut words = traced_words(random);
-    let pixel = words.len() - 2;
-    words[pixel] = 0.3f32.to_bits();
+    words[1] = 0.3f32.to_bits();
     words
 }
 
 /// The same from the side.
 fn level_words(random: [u32; 4]) -> Vec<u32> {
     let mut words = traced_words(random);
-    let up = words.len() - 8;
+    let up = words.len() - 4;
     words[up..up + 3].copy_from_slice(&[0.0f32, 1.0, 0.0].map(f32::to_bits));
     words
 }
@@ -62,17 +62,18 @@ fn level_words(random: [u32; 4]) -> Vec<u32> {
 /// The same of a drop that refracts more than anything that is clear.
 fn dense_words(random: [u32; 4]) -> Vec<u32> {
     let mut words = traced_words(random);
-    let index = words.len() - 5;
+    let index = words.len() - 1;
     words[index] = 6.0f32.to_bits();
     words
 }
 
 /// The same words as the twin takes them, and the width of a pixel.
 fn traced(args: &mut Args<'_>) -> (TracedDrop, f32) {
+    let _size = args.u32();
+    let [pixel, inverse_wide, inverse_tall] = args.f32s();
     let coefficients = args.f32s::<12>();
     let up = args.f32s::<3>().map(f64::from);
-    let [index, inverse_wide, inverse_tall, pixel] = args.f32s();
-    let _size = args.u32();
+    let index = args.f32();
     let drop = TracedDrop {
         coefficients: std::array::from_fn(|n| f64::from(coefficients[n])),
         up,

@@ -61,21 +61,19 @@ fn grid_words(random: [u32; 4]) -> Vec<u32> {
     let edge = Vec3::new(x, y, z);
     let grid = WindGrid::new(edge * -0.5, edge * 0.5, size).expect("a grid");
     let grid = WindFieldGrid::new(&grid, 3, 5);
-    let mut words = grid.low.words();
-    words.push(grid.primitives);
-    words.extend(grid.cell.words());
+    let mut words = grid.cell.words();
     words.push(grid.modes);
+    words.extend(grid.low.words());
+    words.push(grid.primitives);
     words.extend(grid.per_cell.words());
     words.extend(grid.size);
     words
 }
 
 fn grid(args: &mut Args<'_>) -> WindFieldGrid {
-    let low = args.f32s();
-    let primitives = args.u32();
-    let (cell, modes, per_cell) = (args.f32s(), args.u32(), args.f32s());
-    let size = args.u32s();
-    WindFieldGrid { low, primitives, cell, modes, per_cell, padding_2: 0, size, padding_3: 0 }
+    let (cell, modes, low, primitives) = (args.f32s(), args.u32(), args.f32s(), args.u32());
+    let (per_cell, size) = (args.f32s(), args.u32s());
+    WindFieldGrid { cell, modes, low, primitives, per_cell, padding_2: 0, size, padding_3: 0 }
 }
 
 const QUOTIENT: Tol = Tol::relative(

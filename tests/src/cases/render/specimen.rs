@@ -24,25 +24,28 @@ use crate::signature::WordKind;
 use crate::words::{Args, IntoWords};
 use crate::{FunctionCase, KernelCase, Tol};
 
-/// An upright drop of 0.1 to 6 mm, as `MaskTracedDrop` holds it: twelve coefficients, axis, index, two numbers of the
-/// spheroid, and two that the specimen does not use.
+/// An upright drop of 0.1 to 6 mm, as `MaskTracedDrop` holds it: two numbers that the specimen does not use, two of the spheroid, twelve
+/// coefficients, axis, index.
 fn drop_words(random: u32) -> Vec<u32> {
     let shape =
         DropShape::new(1.0e-4 + 5.9e-3 * f64::from(rng_unit(random))).expect("a diameter of the table");
     let drop = upright_drop(&shape, 1.333);
-    let mut words: Vec<u32> = drop.coefficients.iter().map(|&c| (c as f32).to_bits()).collect();
+    let bits = |c: f64| (c as f32).to_bits();
+    let mut words = vec![0, 0];
+    words.extend([drop.inverse_wide, drop.inverse_tall].map(bits));
+    words.extend(drop.coefficients.map(bits));
     words.push(0);
-    words.extend(drop.up.map(|c| (c as f32).to_bits()));
-    words.extend([drop.index, drop.inverse_wide, drop.inverse_tall].map(|c| (c as f32).to_bits()));
-    words.extend([0, 0]);
+    words.extend(drop.up.map(bits));
+    words.push(bits(drop.index));
     words
 }
 
 fn drop(args: &mut Args<'_>) -> TracedDrop {
+    let _size = args.u32();
+    let [_pixel, inverse_wide, inverse_tall] = args.f32s().map(f64::from);
     let coefficients = args.f32s::<12>();
     let up = args.f32s::<3>().map(f64::from);
-    let [index, inverse_wide, inverse_tall, _pixel] = args.f32s().map(f64::from);
-    let _size = args.u32();
+    let index = args.f32().into();
     TracedDrop {
         coefficients: std::array::from_fn(|n| f64::from(coefficients[n])),
         up,
