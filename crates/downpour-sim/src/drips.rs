@@ -290,22 +290,36 @@ impl Drips {
         span_s: [f64; 2],
         min_diameter: f64,
     ) -> Result<Vec<Impact>, SimError> {
+        self.impacts_where(obstacles, [low, high], span_s, min_diameter, &|_| true)
+    }
+
+    /// Those of [`Drips::impacts`] in places, m, that are wanted: in a steady wind a point whose drops land elsewhere is not looked at.
+    ///
+    /// # Errors
+    /// As [`Drips::impacts`].
+    pub fn impacts_where(
+        &self,
+        obstacles: &Obstacles<'_>,
+        [low, high]: [DVec3; 2],
+        span_s: [f64; 2],
+        min_diameter: f64,
+        wanted: &(dyn Fn(DVec3) -> bool + Sync),
+    ) -> Result<Vec<Impact>, SimError> {
         check_span(span_s)?;
         let [begin, end] = span_s;
+        let is_within = |at: DVec3| at.cmpge(low).all() && at.cmplt(high).all() && wanted(at);
         let facets = Facets::new(obstacles);
         let query = Query { obstacles, facets: &facets, wind: &self.options.wind };
         let reach = self.reach([begin - MAX_FALL_S, end]);
         let of_emitter = |emitter: &Emitter| {
             let (middle, radius) = emitter.around(reach);
             let nearest = middle.clamp(low.min(high), high);
-            if emitter.largest() < min_diameter || nearest.distance(middle) > radius {
+            let is_elsewhere = emitter.lands(query.wind).is_some_and(|at| !is_within(at));
+            if emitter.largest() < min_diameter || nearest.distance(middle) > radius || is_elsewhere {
                 return Vec::new();
             }
             let mut impacts = emitter.impacts(&query, span_s);
-            impacts.retain(|impact| {
-                let at = impact.position;
-                at.cmpge(low).all() && at.cmplt(high).all() && f64::from(impact.diameter) >= min_diameter
-            });
+            impacts.retain(|impact| is_within(impact.position) && f64::from(impact.diameter) >= min_diameter);
             impacts
         };
         let impacts: Vec<Vec<Impact>> = self.emitters.par_iter().map(of_emitter).collect();

@@ -89,6 +89,22 @@ pub struct WetGround {
     wakes: Option<(Wakes, Vec<bool>)>,
 }
 
+/// Puddles on which drops make rings.
+#[derive(Clone, Copy, Debug)]
+pub struct RingedWater<'a> {
+    puddles: &'a [(PuddleMap, PuddleLook)],
+    origin: DVec3,
+}
+
+impl RingedWater<'_> {
+    /// True if what has landed on the ground at a position in the world, m, is in the water of one.
+    #[must_use]
+    pub fn holds(&self, position: DVec3) -> bool {
+        let at = (position - self.origin).as_vec3();
+        self.puddles.iter().any(|(map, look)| look.has_rings() && map.is_in_water(at))
+    }
+}
+
 impl WetGround {
     /// The puddles of a weather, if it has any, on the ground of a frame; `first_s` is the time of the first picture. What
     /// moves afterwards leaves them where they are.
@@ -185,10 +201,11 @@ impl WetGround {
         self.ripples.advance(time_s)
     }
 
-    /// True if drops make rings on puddles.
+    /// The puddles on which drops make rings; `None` if there are none.
     #[must_use]
-    pub fn has_rings(&self) -> bool {
-        self.law.is_some() && self.puddles.iter().any(|(_, look)| look.has_rings())
+    pub fn ringed(&self) -> Option<RingedWater<'_>> {
+        let has_rings = self.law.is_some() && self.puddles.iter().any(|(_, look)| look.has_rings());
+        has_rings.then_some(RingedWater { puddles: &self.puddles, origin: self.origin })
     }
 
     /// Finds the rings of single drops of a rain in closed form, and of drops that have dripped ([`Rings::asked`]), for a picture of a scene at
@@ -204,7 +221,7 @@ impl WetGround {
         time_s: f64,
     ) -> Result<(), PuddleError> {
         self.shown = None;
-        let Some(heaviest) = self.law.as_ref().filter(|_| self.has_rings()) else { return Ok(()) };
+        let Some(heaviest) = self.law.as_ref().filter(|_| self.ringed().is_some()) else { return Ok(()) };
         let rings = match self.rings.take() {
             Some(rings) => rings,
             None => Rings::new(heaviest)?,

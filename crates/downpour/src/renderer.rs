@@ -458,8 +458,10 @@ impl Renderer {
         if let Some(ground) = &mut water.ground {
             ground.advance(&self.loaded, time_s)?;
             if let Some(field) = &field {
-                let dripped =
-                    if ground.has_rings() { self.shower.dripped(&frame_scene, time_s)? } else { Vec::new() };
+                let dripped = match ground.ringed() {
+                    Some(water) => self.shower.dripped(&frame_scene, time_s, &|at| water.holds(at))?,
+                    None => Vec::new(),
+                };
                 ground.find_rings(field, &dripped, &frame_scene, time_s)?;
             }
         }

@@ -238,12 +238,18 @@ impl Shower {
         Ok((None, self.drips(frame_scene, view, least, time_s)?))
     }
 
-    /// Drops that have dripped near the eye of a picture and make rings on puddles.
+    /// Drops that have dripped near the eye of a picture, in places, m, where they make rings on puddles.
     ///
     /// # Errors
     /// As [`Shower::at`].
-    pub(crate) fn dripped(&self, frame_scene: &FrameScene, time_s: f64) -> Result<Vec<Impact>, ShowerError> {
-        self.dripping.as_ref().map_or(Ok(Vec::new()), |dripping| dripping.landed(frame_scene, time_s))
+    pub(crate) fn dripped(
+        &self,
+        frame_scene: &FrameScene,
+        time_s: f64,
+        is_water: &(dyn Fn(DVec3) -> bool + Sync),
+    ) -> Result<Vec<Impact>, ShowerError> {
+        let landed = |dripping: &Dripping| dripping.landed(frame_scene, time_s, is_water);
+        self.dripping.as_ref().map_or(Ok(Vec::new()), landed)
     }
 
     /// True if drops splash, where there is rain or something drips.

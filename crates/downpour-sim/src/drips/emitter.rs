@@ -320,10 +320,17 @@ impl Emitter {
         }
     }
 
+    /// Where all of its drops land in a steady wind, m; `None` in another, or if they do not.
+    pub(super) fn lands(&self, wind: &UniformWind) -> Option<DVec3> {
+        (wind.is_steady() && self.landing.is_some()).then_some(self.end)
+    }
+
     /// Its impacts within a span of time, s.
     pub(super) fn impacts(&self, query: &Query<'_>, [begin_s, end_s]: [f64; 2]) -> Vec<Impact> {
         let mut impacts = Vec::new();
-        for drop in self.leaving(begin_s - self.longest_s, end_s) {
+        // In a steady wind all falls are as long.
+        let shortest = self.landing.filter(|_| query.wind.is_steady()).map_or(0.0, |landing| landing.after_s);
+        for drop in self.leaving(begin_s - self.longest_s, end_s - shortest) {
             let leaves = self.leaves(drop);
             if leaves >= end_s {
                 continue;

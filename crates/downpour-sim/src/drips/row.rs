@@ -55,7 +55,7 @@ pub struct DripRow {
 pub struct DripFrame {
     /// Not read: a software driver makes the kernel again for each value of the first word of a block that it reads.
     pub unread: u32,
-    /// Whole seconds of the time of the picture ([`FieldTime`](crate::field::FieldTime)).
+    /// Whole seconds of the time of the picture ([`FieldTime`](crate::field::chain::FieldTime)).
     pub seconds: u32,
     /// See `seconds`.
     pub fraction: u32,

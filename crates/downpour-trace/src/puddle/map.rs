@@ -27,6 +27,9 @@ const LAND_M: f32 = -1.0;
 /// Height over the ground from which rays look up for a roof, m.
 const OVER_GROUND_M: f32 = 0.02;
 
+/// What lies no farther than this above the water or below its ground is in the puddle, m.
+const ABOVE_WATER_M: f32 = 0.03;
+
 /// A rectangle of the ground, seen from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ground {
@@ -253,6 +256,20 @@ impl PuddleMap {
         let velocity = self.flow.as_ref().map_or(Vec2::ZERO, |flow| flow.velocity(index));
         let water = WaterAt { ground, level: ground + rise, depth, open, velocity };
         (depth >= PUDDLE_WATER_MIN_DEPTH).then_some(water)
+    }
+
+    /// The water above the ground at a position relative to the maps' origin, m, and the height of its surface over that; `None` on land, and
+    /// above or below the puddle.
+    pub(super) fn water_over(&self, at: Vec3) -> Option<(WaterAt, f32)> {
+        let water = self.water_at(self.place(turned(self.ground.turn), at))?;
+        let deep = self.ground.middle.y + water.level - at.y;
+        (-ABOVE_WATER_M..water.depth + ABOVE_WATER_M).contains(&deep).then_some((water, deep))
+    }
+
+    /// True if a position on the ground, relative to the maps' origin, m, is in the puddle's water.
+    #[must_use]
+    pub fn is_in_water(&self, at: Vec3) -> bool {
+        self.water_over(at).is_some()
     }
 
     /// Area under water, m^2.

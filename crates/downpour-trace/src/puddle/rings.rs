@@ -23,7 +23,7 @@ use glam::{DVec3, Vec2, Vec3};
 use half::f16;
 use rayon::prelude::*;
 
-use super::map::{Ground, PuddleMap, turned};
+use super::map::{Ground, PuddleMap};
 use super::ring_drops::{Impact, RingDrops};
 use super::ripples::{MEMORY_S, options};
 use super::{PuddleError, PuddleLook};
@@ -49,9 +49,6 @@ const BINS: u32 = 32;
 
 /// Smallest drop with a ring, m.
 const MIN_DIAMETER_M: f64 = 1.5e-3;
-
-/// A drop that has landed no farther than this above the water of a puddle or below its ground has landed in it, m.
-const ABOVE_WATER_M: f32 = 0.03;
 
 /// Drops of some diameter, with the integrals over time of their squared slope, m^2 s: of all of it, and of that of a ring.
 #[derive(Clone, Copy, Debug)]
@@ -232,12 +229,8 @@ impl Rings {
     /// of the rain with the same energy.
     fn dripped(&self, drop: &Dripped, map: &PuddleMap, origin: DVec3) -> Option<Impact> {
         let at = (drop.position - origin).as_vec3();
-        let water = map.water_at(map.place(turned(map.ground.turn), at))?;
         // It has landed on the ground below the water, and not on what stands above it.
-        let deep = map.ground.middle.y + water.level - at.y;
-        if !(-ABOVE_WATER_M..water.depth + ABOVE_WATER_M).contains(&deep) {
-            return None;
-        }
+        let (water, deep) = map.water_over(at)?;
         let mut diameter = f64::from(drop.diameter);
         let energy = diameter * diameter * diameter * f64::from(drop.velocity.length_squared());
         // Terminal speeds change slowly with the diameter: each round has a third of the error before it.

@@ -91,12 +91,17 @@ impl Dripping {
         Ok(drops)
     }
 
-    /// Those that have landed near the eye of a picture and make rings on puddles.
-    pub(super) fn landed(&self, frame_scene: &FrameScene, time_s: f64) -> Result<Vec<Impact>, ShowerError> {
+    /// Those that have landed near the eye of a picture, in places, m, where they make rings on puddles.
+    pub(super) fn landed(
+        &self,
+        frame_scene: &FrameScene,
+        time_s: f64,
+        is_water: &(dyn Fn(DVec3) -> bool + Sync),
+    ) -> Result<Vec<Impact>, ShowerError> {
         let eye = frame_scene.origin + frame_scene.viewpoint.eye.as_dvec3();
         let ([low, high], span_s) = Rings::asked(eye, time_s);
         let obstacles = super::obstacles(frame_scene);
-        Ok(self.drips(frame_scene)?.impacts(&obstacles, low, high, span_s, 0.0)?)
+        Ok(self.drips(frame_scene)?.impacts_where(&obstacles, [low, high], span_s, 0.0, is_water)?)
     }
 
     /// The drips that a device finds for a picture, from so many pixels on, and their splashes; `None` where it cannot.
