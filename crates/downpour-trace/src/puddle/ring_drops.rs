@@ -61,9 +61,9 @@ pub(super) struct Impact {
     pub(super) at: Vec2,
     /// Velocity of the water there, along x and z, m/s.
     pub(super) drift: Vec2,
-    /// When it comes through the plane at the height of the map's middle, s, and how long before that it meets the water.
+    /// When it comes through the plane at the height of the map's middle (or lands), s, and how much later it meets the water; below 0: before.
     pub(super) time_s: f64,
-    pub(super) ago_s: f32,
+    pub(super) later_s: f32,
     /// m.
     pub(super) diameter: f32,
     /// Where its diameter's logarithm is between those of the smallest and the largest, 0 to 1.
@@ -263,15 +263,15 @@ fn impacts(map: &PuddleMap, origin: DVec3, crossings: &[Crossing], [low, high]: 
         let at = (crossing.position - origin).as_vec3();
         let rise = map.water_at(map.place(turn, at))?.level;
         // From the height of the map's middle to the surface.
-        let ago_s = rise / crossing.velocity.y.min(-0.1);
-        let at = at + crossing.velocity * ago_s;
+        let later_s = rise / crossing.velocity.y.min(-0.1);
+        let at = at + crossing.velocity * later_s;
         let water = map.water_at(map.place(turn, at))?;
         // Where a part of the rain arrives, a part of the drops does.
         let chance = (crossing.id >> 40) as f32 / 16_777_216.0;
         let (time_s, diameter, id) = (crossing.time_s, crossing.diameter, crossing.id);
         let size = (ops::ln(f64::from(diameter) / low) / range) as f32;
         let (at, drift) = (Vec2::new(at.x, at.z), water.velocity);
-        (chance < water.open).then_some(Impact { at, drift, time_s, ago_s, diameter, size, id })
+        (chance < water.open).then_some(Impact { at, drift, time_s, later_s, diameter, size, id })
     };
     crossings.par_iter().with_min_len(DROPS_TOGETHER).filter_map(impact).collect()
 }

@@ -240,12 +240,12 @@ impl Rings {
         }
         let diameter = diameter.min(DIAMETERS_M[1]);
         let size = (ops::ln(diameter / self.smallest) / ops::ln(DIAMETERS_M[1] / self.smallest)) as f32;
-        let ago_s = deep.max(0.0) / (-drop.velocity.y).max(0.1);
+        let later_s = deep.max(0.0) / drop.velocity.y.min(-0.1);
         (diameter >= self.smallest).then_some(Impact {
             at: Vec2::new(at.x, at.z),
             drift: water.velocity,
             time_s: drop.time_s,
-            ago_s,
+            later_s,
             diameter: diameter as f32,
             size,
             id: drop.id,
@@ -264,7 +264,7 @@ impl Rings {
 /// The ring of a drop in a picture; `None` if there is none.
 fn placed_ring(impact: &Impact, placing: &Placing) -> Option<Placed> {
     let Placing { time_s, corner, middle } = *placing;
-    let age_s = (time_s - impact.time_s) as f32 - impact.ago_s;
+    let age_s = (time_s - impact.time_s) as f32 - impact.later_s;
     let age = age_s / PUDDLE_RINGS_LIFE;
     // Running water takes its rings along.
     let at = impact.at + impact.drift * age_s;
