@@ -70,7 +70,7 @@ use crate::SimError;
 use crate::facets::Facets;
 use crate::falling::FallingDrop;
 use crate::field::check_time;
-use crate::impacts::splashes::{MAX_CROWN_S, largest};
+use crate::impacts::splashes::{MAX_CROWN_S, is_shown, largest};
 use crate::impacts::{Impact, SplashOptions, check_span};
 use crate::shelter::Obstacles;
 use crate::view::{View, within};
@@ -238,9 +238,7 @@ impl Drips {
         time_s: f64,
         options: &SplashOptions,
     ) -> Result<Vec<FallingDrop>, SimError> {
-        view.check()?;
-        check_time(time_s)?;
-        options.check()?;
+        options.check(view, time_s)?;
         let facets = Facets::new(obstacles);
         let query = Query { obstacles, facets: &facets, wind: &self.options.wind };
         let span_s = [time_s - MAX_CROWN_S, time_s];
@@ -249,12 +247,8 @@ impl Drips {
         let sides = view.sides();
         let of_emitter = |emitter: &Emitter| {
             let [diameter, speed] = emitter.falling();
-            let Some((crown, range)) = options.largest_crown(view, diameter, speed + wind) else {
-                return Vec::new();
-            };
-            let (middle, radius) = emitter.around(reach);
-            let offset = middle - view.eye;
-            if offset.length() - radius - crown > range || !within(&sides, offset, radius + 1.5 * crown) {
+            let crown = options.largest_crown(view, diameter, speed + wind);
+            if !crown.is_some_and(|crown| is_shown(view, &sides, emitter.around(reach), crown)) {
                 return Vec::new();
             }
             let impacts = emitter.impacts(&query, span_s).into_iter();

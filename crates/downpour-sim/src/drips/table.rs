@@ -8,7 +8,7 @@ use super::emitter::Emitter;
 use super::row::{DripFrame, DripRow};
 use crate::field::chain::FieldTime;
 use crate::impacts::SplashOptions;
-use crate::impacts::splashes::MAX_CROWN_S;
+use crate::impacts::splashes::{MAX_CROWN_S, is_shown};
 use crate::view::{View, within};
 
 /// Edge of a cell, m.
@@ -148,11 +148,8 @@ impl DripTable {
         let wind = f64::from(self.wind.length());
         let per_s = |cell: &DripCell| {
             let [diameter, speed] = cell.falling;
-            let (crown, range) = splashes.largest_crown(view, diameter, speed + wind)?;
-            let offset = cell.middle - view.eye;
-            let is_shown = offset.length() - cell.radius - crown <= range
-                && within(&sides, offset, cell.radius + 1.5 * crown);
-            is_shown.then_some(cell.per_s)
+            let crown = splashes.largest_crown(view, diameter, speed + wind)?;
+            is_shown(view, &sides, (cell.middle, cell.radius), crown).then_some(cell.per_s)
         };
         let landed: f64 = self.cells.iter().filter_map(per_s).sum::<f64>() * MAX_CROWN_S;
         // Points drip each at its own times: 8 standard deviations more than their mean do not come.

@@ -92,7 +92,7 @@ impl<'a> DripSearch<'a> {
     pub(super) fn query(&self) -> Result<DripQuery, SimError> {
         self.view.check()?;
         check_time(self.time_s)?;
-        self.splashes.map_or(Ok(()), SplashOptions::check)?;
+        self.splashes.map_or(Ok(()), |splashes| splashes.check(self.view, self.time_s))?;
         Ok(self.drips.table.query(self.view, self.least_pixels, self.time_s, self.splashes))
     }
 

@@ -59,23 +59,17 @@ impl RainField {
         time_s: f64,
         options: &SplashOptions,
     ) -> Result<Vec<FallingDrop>, SimError> {
-        view.check()?;
-        check_time(time_s)?;
-        options.check()?;
+        options.check(view, time_s)?;
         let sides = view.sides();
         // The wind adds to the speed of a drop toward a slope.
         let wind = self.wind.velocity(time_s).length();
         let reach = |diameter: f64, speed: f64| options.largest_crown(view, diameter, speed + wind);
         let of_class = |class: &Class| {
             let (radius, range) = reach(class.largest, class.speeds[1])?;
-            let shown = move |(middle, half): (DVec3, f64), radius: f64, range: f64| {
-                let offset = middle - view.eye;
-                offset.length() - half - radius <= range && within(&sides, offset, half + 1.5 * radius)
-            };
-            let in_part = move |place: &Bounds| shown(place.ball(), radius, range);
+            let in_part = move |place: &Bounds| is_shown(view, &sides, place.ball(), (radius, range));
             let wanted = move |drop: &Candidate| {
                 let found = reach(drop.diameter.into(), drop.speed);
-                found.is_some_and(|(radius, range)| shown(drop.ball(), radius, range))
+                found.is_some_and(|crown| is_shown(view, &sides, drop.ball(), crown))
             };
             (range >= view.near).then(|| OfClass { bounds: view.bounds(range, radius), in_part, wanted })
         };
@@ -96,9 +90,22 @@ pub(crate) fn largest(mut crowns: Vec<FallingDrop>) -> Vec<FallingDrop> {
     crowns
 }
 
+/// True if a picture may show a crown that stands in a ball, of a radius and up to a distance as [`SplashOptions::largest_crown`] has them.
+pub(crate) fn is_shown(
+    view: &View,
+    sides: &[DVec3; 5],
+    (middle, half): (DVec3, f64),
+    (radius, range): (f64, f64),
+) -> bool {
+    let offset = middle - view.eye;
+    offset.length() - half - radius <= range && within(sides, offset, half + 1.5 * radius)
+}
+
 impl SplashOptions {
-    /// Checks that the size is 0.1 to 10.
-    pub(crate) fn check(&self) -> Result<(), SimError> {
+    /// Checks the picture, and that the size is 0.1 to 10.
+    pub(crate) fn check(&self, view: &View, time_s: f64) -> Result<(), SimError> {
+        view.check()?;
+        check_time(time_s)?;
         in_range("size of splashes", self.size, "", &(0.1..=10.0), 1.0, "0.1 to 10")?;
         Ok(())
     }
